@@ -23,9 +23,9 @@ static struct image copy_of(const struct image *image)
 
 TEST(equal_pictures)
 {
-    struct image a = fixture_floats(10, 10, 3);
+    own_image a = fixture_floats(10, 10, 3);
     a.pixels[4] = NAN;
-    struct image b = copy_of(&a);
+    own_image b = copy_of(&a);
     whit_difference difference = compare(&a, &b);
     assert_int_equal(difference.pixel_count, 100);
     assert_int_equal(difference.differing_pixels, 0);
@@ -34,13 +34,11 @@ TEST(equal_pictures)
     assert_int_equal(difference.nonfinite_b, 1);
     assert_int_equal(difference.nonfinite_differing, 0);
     assert_true(difference.rmse == 0.0 && difference.largest == 0.0);
-    image_finish(&a);
-    image_finish(&b);
 }
 
 TEST(differences_are_measured)
 {
-    struct image a = fixture_flat(2, 2, 4, 0.0f), b = copy_of(&a);
+    own_image a = fixture_flat(2, 2, 4, 0.0f), b = copy_of(&a);
     b.pixels[1] = 0.5f;     /* green of pixel 0 */
     b.pixels[4 + 3] = 1.0f; /* alpha of pixel 1: not part of the error */
     b.pixels[8] = 1e-6f;    /* far below 1/255 */
@@ -50,13 +48,11 @@ TEST(differences_are_measured)
     assert_int_equal(difference.over_1_255, 2);
     assert_true(difference.largest == 0.5);
     assert_true(fabs(difference.rmse - sqrt((0.25 + 1e-12) / 12.0)) < 1e-12);
-    image_finish(&a);
-    image_finish(&b);
 }
 
 TEST(one_step_of_8_bits_is_not_over)
 {
-    struct image a = fixture_flat(255, 1, 1, 0.0f), b = copy_of(&a);
+    own_image a = fixture_flat(255, 1, 1, 0.0f), b = copy_of(&a);
     for (int i = 0; i < 255; ++i) {
         a.pixels[i] = image_linear_from_srgb((float)i / 255.0f);
         b.pixels[i] = image_linear_from_srgb((float)(i + 1) / 255.0f);
@@ -65,13 +61,11 @@ TEST(one_step_of_8_bits_is_not_over)
     for (int i = 0; i < 254; ++i)
         b.pixels[i] = image_linear_from_srgb((float)(i + 2) / 255.0f);
     assert_int_equal(compare(&a, &b).over_1_255, 254);
-    image_finish(&a);
-    image_finish(&b);
 }
 
 TEST(nonfinite_counts_but_does_not_spread)
 {
-    struct image a = fixture_flat(3, 1, 3, 0.0f), b = copy_of(&a);
+    own_image a = fixture_flat(3, 1, 3, 0.0f), b = copy_of(&a);
     a.pixels[0] = NAN;
     b.pixels[3] = INFINITY;
     b.pixels[4] = INFINITY;
@@ -84,14 +78,12 @@ TEST(nonfinite_counts_but_does_not_spread)
     assert_int_equal(difference.over_1_255, 3);
     assert_true(difference.largest == 0.25);
     assert_true(fabs(difference.rmse - sqrt(0.0625 / 3.0)) < 1e-12);
-    image_finish(&a);
-    image_finish(&b);
 }
 
 /* Values by hand: errors relative to the reference, and signs of mean differences. */
 TEST(means_are_those_of_the_formulas)
 {
-    struct image a = fixture_flat(2, 1, 3, 0.0f), b = copy_of(&a), difference_image;
+    own_image a = fixture_flat(2, 1, 3, 0.0f), b = copy_of(&a), difference_image = {0};
     const float from[6] = {0.5f, 0.25f, 0.0f, 2.0f, 0.0f, 1.0f};
     const float to[6] = {0.75f, 0.25f, 0.125f, 1.0f, 0.0f, 1.5f};
     memcpy(a.pixels, from, sizeof from);
@@ -109,9 +101,6 @@ TEST(means_are_those_of_the_formulas)
     assert_int_equal(image_subtract(NULL, &a, &b, &difference_image), WHIT_OK);
     assert_true(difference_image.pixels[0] == 0.25f && difference_image.pixels[2] == 0.125f);
     assert_true(isnan(difference_image.pixels[3]) && isnan(difference_image.pixels[5]));
-    image_finish(&difference_image);
-    image_finish(&a);
-    image_finish(&b);
 }
 
 /* Grey compares as three equal channels, and a missing alpha as 1. */
@@ -138,7 +127,7 @@ TEST(channels_may_differ)
 
 TEST(integers_differ_or_not)
 {
-    struct image a = fixture_words(10, 10, 2), b = copy_of(&a);
+    own_image a = fixture_words(10, 10, 2), b = copy_of(&a);
     assert_true(compare(&a, &b).largest == 0.0);
     b.words[0] ^= 1;
     b.words[1] ^= 1;
@@ -146,8 +135,6 @@ TEST(integers_differ_or_not)
     whit_difference difference = compare(&a, &b);
     assert_int_equal(difference.differing_pixels, 2);
     assert_true(difference.largest == 1.0);
-    image_finish(&a);
-    image_finish(&b);
 }
 
 TEST_IN(unlike_pictures_are_refused, folder_begin, folder_end)

@@ -122,7 +122,7 @@ static void answer_anything(struct child_reply *reply)
 
 TEST_IN(replies_are_not_believed, folder_begin, folder_end)
 {
-    struct image image = fixture_floats(7, 5, 4);
+    own_image image = fixture_floats(7, 5, 4);
     struct sample sample = sample_of("a.png", &image);
     char *path = in_folder(sample.name);
     int refused = 0;
@@ -134,7 +134,6 @@ TEST_IN(replies_are_not_believed, folder_begin, folder_end)
     assert_true(refused > FLIPS / 2);
     assert_true(try_load(path, sample.data, sample.size_bytes));
     free(sample.data);
-    image_finish(&image);
 }
 
 TEST_IN(headers_that_lie, folder_begin, folder_end)

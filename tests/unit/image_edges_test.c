@@ -9,8 +9,8 @@ enum { WIDTH = 4, HEIGHT = 3, COUNT = WIDTH * HEIGHT };
 static void assert_edges(const char *instances, const char *primitives, bool of_primitives,
                          const char *wanted)
 {
-    struct image color = fixture_flat(WIDTH, HEIGHT, 4, 2.5f);
-    struct image ids = fixture_words(WIDTH, HEIGHT, 2);
+    own_image color = fixture_flat(WIDTH, HEIGHT, 4, 2.5f);
+    own_image ids = fixture_words(WIDTH, HEIGHT, 2);
     for (size_t i = 0; i < COUNT; ++i) {
         ids.words[2 * i] = (uint32_t)instances[i];
         ids.words[2 * i + 1] = (uint32_t)primitives[i];
@@ -22,8 +22,6 @@ static void assert_edges(const char *instances, const char *primitives, bool of_
             assert_float_equal(color.pixels[4 * i + c], light, 0.0f);
         assert_float_equal(color.pixels[4 * i + 3], 2.5f, 0.0f);
     }
-    image_finish(&color);
-    image_finish(&ids);
 }
 
 TEST(edges_are_of_objects_or_of_primitives)

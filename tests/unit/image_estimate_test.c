@@ -27,33 +27,30 @@ static const double LOW = 0.36, HIGH = 0.65, FADES = 0.8, A_RATE = 2.6, USUAL = 
 /* Notes a doubling whose halves differ by twice `changes` in one channel of each pixel. */
 static void note(struct estimate *estimate, const float changes[COUNT])
 {
-    struct image a = image_of(4, 0.5f), b = image_of(4, 0.5f);
+    own_image a = image_of(4, 0.5f), b = image_of(4, 0.5f);
     const struct image *const halves[2] = {&a, &b};
     for (size_t i = 0; i < COUNT; ++i) {
         b.pixels[4 * i + i % 3] += (i % 2 ? 2.0f : -2.0f) * changes[i];
         b.pixels[4 * i + 3] = 9.0f; /* no colour */
     }
     estimate_note_change(estimate, halves);
-    image_finish(&a);
-    image_finish(&b);
 }
 
 /* Notes the changes, and gives the estimate of each pixel of a picture without cut rays. */
 static void note_and_estimate(struct estimate *estimate, const float changes[COUNT],
                               struct image *out)
 {
-    struct image cuts = image_of(2, 0.0f);
+    own_image cuts = image_of(2, 0.0f);
     double of_cuts;
     note(estimate, changes);
     estimate_error(estimate, &cuts, 2.0, out, &of_cuts);
     assert_near(of_cuts, 0.0);
-    image_finish(&cuts);
 }
 
 TEST(the_worst_channel_counts_and_so_do_pixels_around)
 {
     float changes[COUNT] = {[0] = 0.4f, [WIDTH + 1] = 0.9f}; /* (0, 0), (1, 1) */
-    struct image out = image_of(1, 0.0f);
+    own_image out = image_of(1, 0.0f);
     struct estimate estimate;
     assert_int_equal(estimate_init(&estimate, WIDTH, HEIGHT), WHIT_OK);
     note_and_estimate(&estimate, changes, &out);
@@ -62,13 +59,12 @@ TEST(the_worst_channel_counts_and_so_do_pixels_around)
     assert_near((double)out.pixels[0], A_RATE * USUAL * pow(0.4, 0.75) * pow(corner, 0.25));
     assert_near((double)out.pixels[1], 0.0); /* this pixel itself has not changed */
     estimate_finish(&estimate);
-    image_finish(&out);
 }
 
 /* All pixels change alike, by `rate` from doubling to doubling: the factor of the estimate. */
 static double factor_of(double rate, int doublings)
 {
-    struct image out = image_of(1, 0.0f);
+    own_image out = image_of(1, 0.0f);
     struct estimate estimate;
     float changes[COUNT];
     double change = 1.0;
@@ -81,7 +77,6 @@ static double factor_of(double rate, int doublings)
     }
     double factor = (double)out.pixels[7] / change;
     estimate_finish(&estimate);
-    image_finish(&out);
     return factor;
 }
 
@@ -114,7 +109,7 @@ TEST(earlier_changes_fade_by_the_rate_of_their_pixel)
 TEST(rates_are_those_of_the_pixels_around)
 {
     float changes[COUNT] = {0};
-    struct image out = image_of(1, 0.0f);
+    own_image out = image_of(1, 0.0f);
     struct estimate estimate;
     assert_int_equal(estimate_init(&estimate, WIDTH, HEIGHT), WHIT_OK);
     for (int n = 0; n < 5; ++n) {
@@ -129,13 +124,12 @@ TEST(rates_are_those_of_the_pixels_around)
     assert_within((double)out.pixels[4], A_RATE * rate * pow(0.7, 4) * slow * pow(4.0, -0.25),
                   1e-4);
     estimate_finish(&estimate);
-    image_finish(&out);
 }
 
 TEST(cut_rays_carry_twice_the_mean)
 {
     float changes[COUNT] = {[0] = 0.4f};
-    struct image cuts = image_of(2, 0.0f), out = image_of(1, 0.0f);
+    own_image cuts = image_of(2, 0.0f), out = image_of(1, 0.0f);
     struct estimate estimate;
     assert_int_equal(estimate_init(&estimate, WIDTH, HEIGHT), WHIT_OK);
     note(&estimate, changes);
@@ -147,16 +141,14 @@ TEST(cut_rays_carry_twice_the_mean)
     assert_near(of_cuts, sqrt(3.0 * 3.0 / COUNT) / 1.5);
     assert_near(whole, sqrt((3.0 * 3.0 + corner * corner) / COUNT) / 1.5);
     estimate_finish(&estimate);
-    image_finish(&cuts);
-    image_finish(&out);
 }
 
 /* A pixel that is infinite in one half has an error that no bound meets, one that is infinite in
    both tells nothing. */
 TEST(infinite_pixels_leave_the_others_as_they_are)
 {
-    struct image a = image_of(4, 0.5f), b = image_of(4, 0.5f), cuts = image_of(2, 0.0f);
-    struct image out = image_of(1, 0.0f);
+    own_image a = image_of(4, 0.5f), b = image_of(4, 0.5f), cuts = image_of(2, 0.0f);
+    own_image out = image_of(1, 0.0f);
     const struct image *const halves[2] = {&a, &b};
     struct estimate estimate;
     double of_cuts;
@@ -168,15 +160,11 @@ TEST(infinite_pixels_leave_the_others_as_they_are)
     for (size_t i = 1; i < COUNT; ++i)
         assert_true(out.pixels[i] == 0.0f);
     estimate_finish(&estimate);
-    image_finish(&a);
-    image_finish(&b);
-    image_finish(&cuts);
-    image_finish(&out);
 }
 
 TEST(rays_that_were_cut_are_reckoned_with_as_those_that_were_not)
 {
-    struct image whole = image_of(4, 1.0f), own = image_of(4, 1.0f), sent = image_of(2, 0.0f);
+    own_image whole = image_of(4, 1.0f), own = image_of(4, 1.0f), sent = image_of(2, 0.0f);
     whole.pixels[4] = 3.0f;
     own.pixels[4] = 2.0f;  /* 1 in red, by weights of 0.5 */
     sent.pixels[2] = 8.0f; /* for the depth: was not sent on by these settings either */
@@ -184,7 +172,4 @@ TEST(rays_that_were_cut_are_reckoned_with_as_those_that_were_not)
     assert_near(estimate_cut_radiance(&whole, &own, &sent), 2.0);
     sent.pixels[2 + 1] = 0.0f; /* no ray: as camera rays */
     assert_near(estimate_cut_radiance(&whole, &own, &sent), (3.0 + COUNT - 1) / COUNT);
-    image_finish(&whole);
-    image_finish(&own);
-    image_finish(&sent);
 }

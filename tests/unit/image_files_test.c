@@ -48,11 +48,9 @@ TEST_IN(floats_keep_every_bit, folder_begin, folder_end)
 TEST_IN(integers_keep_every_bit, folder_begin, folder_end)
 {
     for (uint32_t channels = 1; channels <= 4; ++channels) {
-        struct image image = fixture_words(53, 41, channels), loaded;
+        own_image image = fixture_words(53, 41, channels), loaded = {0};
         save_and_load("ids.exr", &image, &loaded);
         assert_images_equal(&image, &loaded);
-        image_finish(&loaded);
-        image_finish(&image);
     }
 }
 
@@ -91,7 +89,7 @@ static int code_of(float linear)
 
 TEST_IN(png_rounds_to_nearest_srgb, folder_begin, folder_end)
 {
-    struct image image = fixture_floats(211, 97, 4), loaded;
+    own_image image = fixture_floats(211, 97, 4), loaded = {0};
     for (uint32_t i = 0; i < 4000; ++i)
         image.pixels[i] = (float)i / 1e6f; /* where the codes lie close */
     save_and_load("a.png", &image, &loaded);
@@ -104,21 +102,16 @@ TEST_IN(png_rounds_to_nearest_srgb, folder_begin, folder_end)
             assert_int_equal(code_of(loaded.pixels[i]), srgb_code(image.pixels[i]));
         }
     }
-    image_finish(&loaded);
-    image_finish(&image);
 }
 
 TEST_IN(png_survives_its_own_round_trip, folder_begin, folder_end)
 {
     for (uint32_t channels = 1; channels <= 3; channels += 2) {
-        struct image image = fixture_floats(64, 64, channels), first, second;
+        own_image image = fixture_floats(64, 64, channels), first = {0}, second = {0};
         save_and_load("a.png", &image, &first);
         save_and_load("b.png", &first, &second);
         assert_int_equal(first.channels, channels);
         assert_images_equal(&first, &second);
-        image_finish(&first);
-        image_finish(&second);
-        image_finish(&image);
     }
 }
 
@@ -152,7 +145,7 @@ TEST_IN(nonfinite_is_magenta_and_counted, folder_begin, folder_end)
 TEST_IN(recipe_comes_back, folder_begin, folder_end)
 {
     static const char *const names[] = {"a.png", "a.exr", "a.pfm"};
-    struct image image = fixture_floats(9, 7, 3);
+    own_image image = fixture_floats(9, 7, 3);
     for (int i = 0; i < 3; ++i) {
         char *path = in_folder(names[i]);
         whit_text *texts;
@@ -170,12 +163,11 @@ TEST_IN(recipe_comes_back, folder_begin, folder_end)
         free(texts);
     }
     assert_int_equal(messages.errors, 0);
-    image_finish(&image);
 }
 
 TEST_IN(refusals_leave_nothing_behind, folder_begin, folder_end)
 {
-    struct image floats = fixture_floats(4, 4, 3), words = fixture_words(4, 4, 2), none = {0};
+    own_image floats = fixture_floats(4, 4, 3), words = fixture_words(4, 4, 2), none = {0};
     const whit_text empty = {"", "value"}; /* refused half-way */
     const struct {
         const char *name;
@@ -200,8 +192,6 @@ TEST_IN(refusals_leave_nothing_behind, folder_begin, folder_end)
     assert_int_equal(mkdir(folder, 0700), 0);
     assert_true(image_format_known("x.PNG", false) && image_format_known("x.exr", true));
     assert_false(image_format_known("x.png", true) || image_format_known("exr", false));
-    image_finish(&floats);
-    image_finish(&words);
 }
 
 /* Writes a PNG with libpng, with a compressible text of `text_bytes`, unless that is 0. */
@@ -435,7 +425,7 @@ TEST_IN(hdr_rows_of_all_kinds, folder_begin, folder_end)
                                "\x08\x01\x02\x03\x04\x05\x06\x07\x08"
                                "\x84\x10\x84\x20"
                                "\x88\x88";
-    struct image image;
+    own_image image = {0};
     fixture_put(path, file, sizeof file - 1);
     assert_int_equal(image_load(&warnings_log, NULL, path, NULL, &image), WHIT_OK);
     assert_int_equal(image.width, 8);
@@ -450,7 +440,6 @@ TEST_IN(hdr_rows_of_all_kinds, folder_begin, folder_end)
         const float expected[3] = {128.0f, (float)(x + 1), x < 4 ? 16.0f : 32.0f};
         assert_memory_equal(image.pixels + 24 + 3 * x, expected, sizeof expected);
     }
-    image_finish(&image);
 }
 
 static uint64_t malloc_bytes;
@@ -491,13 +480,12 @@ TEST_IN(png_texts_take_what_they_may, folder_begin, folder_end)
     png_write_raw(path, PNG_COLOR_TYPE_GRAY, 8, PNG_INTERLACE_NONE, TEXT_BYTES);
     size_t size_bytes;
     uint8_t *file = repeat_text(path, &size_bytes);
-    struct image image;
+    own_image image = {0};
     fixture_put(path, file, size_bytes);
     const struct image_source source = {&warnings_log, path, file, size_bytes};
     malloc_bytes = 0;
     assert_int_equal(image_decode(&source, &image), WHIT_OK); /* directly, not in a child */
     assert_in_range(malloc_bytes, TEXT_BYTES, FREE_BYTES + 10 * size_bytes + (1 << 20));
-    image_finish(&image);
     free(file);
 }
 

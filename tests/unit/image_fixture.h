@@ -8,7 +8,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "folder_fixture.h"
-#include "image/image.h"
+#include "owned_image.h"
 
 /* Overwrites a file in place: creating files is slow, and some file systems wait for the disk when
    a file is truncated to 0 and filled again. */

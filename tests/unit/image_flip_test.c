@@ -279,13 +279,10 @@ TEST(means_are_those_of_another_program)
 
 static double flip_of_colors(const uint8_t p[3], const uint8_t q[3])
 {
-    struct image a = image_of_one(9, 7, p), b = image_of_one(9, 7, q), map;
+    own_image a = image_of_one(9, 7, p), b = image_of_one(9, 7, q), map = {0};
     double mean = flip_of(&a, &b, 0.0, &map);
     for (int i = 0; i < 63; ++i) /* also at the borders: filters add up to 1 there too */
         assert_true(fabs((double)map.pixels[i] - mean) < 1e-4);
-    image_finish(&map);
-    image_finish(&a);
-    image_finish(&b);
     return mean;
 }
 
@@ -320,16 +317,13 @@ TEST(one_colour_is_as_by_hand)
    64 x 64 pixels of 0.1 and of 0.9, linear half floats, mean and largest are 0.9514. */
 TEST(grey_pair_is_as_published)
 {
-    struct image a = fixture_flat(64, 64, 3, 0.099975586f);
-    struct image b = fixture_flat(64, 64, 3, 0.89990234f), map;
+    own_image a = fixture_flat(64, 64, 3, 0.099975586f);
+    own_image b = fixture_flat(64, 64, 3, 0.89990234f), map = {0};
     struct flip_summary summary;
     assert_int_equal(image_flip(&a, &b, 0.0, &map, &summary), WHIT_OK);
     print_message("mean %.6f, largest %.6f; published: 0.9514\n", summary.mean, summary.largest);
     assert_true(fabs(summary.mean - 0.9514) <= 0.5e-4);
     assert_true(fabs(summary.largest - 0.9514) <= 0.5e-4);
-    image_finish(&map);
-    image_finish(&a);
-    image_finish(&b);
 }
 
 TEST(equal_is_exactly_none)
@@ -369,18 +363,16 @@ static struct image noisy(const struct image *image, float amplitude)
 TEST(noise_counts_by_its_size)
 {
     static const uint8_t grey[3] = {150, 150, 150};
-    struct image a = image_of_one(40, 30, grey);
+    own_image a = image_of_one(40, 30, grey);
     double before = 0.0;
     for (float amplitude = 0.01f; amplitude < 0.5f; amplitude *= 1.5f) {
-        struct image b = noisy(&a, amplitude);
+        own_image b = noisy(&a, amplitude);
         double mean = flip_of(&a, &b, 0.0, NULL);
         assert_true(mean > before * 1.05);
         before = mean;
         assert_true(flip_of(&a, &b, 134.0, NULL) < mean);
         assert_true(flip_of(&a, &b, 20.0, NULL) > mean);
-        image_finish(&b);
     }
-    image_finish(&a);
 }
 
 /* Values that a PNG clamps make no difference; non-finite pixels count as magenta. */
@@ -407,8 +399,9 @@ TEST(pictures_are_taken_as_shown)
 
 TEST(other_pictures_are_refused)
 {
-    struct image a = fixture_floats(4, 3, 3), b = fixture_floats(3, 4, 3);
-    struct image ids = fixture_words(4, 3, 1), map;
+    own_image a = fixture_floats(4, 3, 3), b = fixture_floats(3, 4, 3);
+    own_image ids = fixture_words(4, 3, 1);
+    struct image map;
     struct flip_summary summary;
     assert_int_equal(image_flip(&a, &b, 0.0, &map, &summary), WHIT_ERROR_USAGE);
     assert_int_equal(image_flip(&ids, &ids, 0.0, &map, &summary), WHIT_ERROR_USAGE);
@@ -418,7 +411,4 @@ TEST(other_pictures_are_refused)
     assert_null(map.pixels);
     assert_int_equal(image_flip(&a, &a, 1000.0, &map, &summary), WHIT_OK);
     image_finish(&map);
-    image_finish(&a);
-    image_finish(&b);
-    image_finish(&ids);
 }

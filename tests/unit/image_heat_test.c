@@ -90,7 +90,7 @@ TEST(signed_colors_have_two_sides)
 
 TEST(signed_pictures_show_the_farthest_channel)
 {
-    struct image values = fixture_flat(200, 2, 3, 0.0f), heat;
+    own_image values = fixture_flat(200, 2, 3, 0.0f), heat = {0};
     for (int i = 0; i < 400; ++i)
         values.pixels[3 * i + 1] = i == 8 ? 0.5f : -0.25f;
     values.pixels[0] = 0.375f;
@@ -109,13 +109,11 @@ TEST(signed_pictures_show_the_farthest_channel)
     assert_true(bar[3 * 5] < bar[3 * 5 + 2]);
     assert_true(bar[3 * (heat.width - 6)] > bar[3 * (heat.width - 6) + 2]);
     assert_true(bar[3 * (heat.width / 2)] > 0.8f);
-    image_finish(&values);
-    image_finish(&heat);
 }
 
 TEST(the_scale_ignores_the_brightest_200th)
 {
-    struct image values = fixture_flat(100, 10, 1, 0.0f);
+    own_image values = fixture_flat(100, 10, 1, 0.0f);
     for (int i = 0; i < 1000; ++i)
         values.pixels[(i * 7) % 1000] = (float)(i + 1); /* 1 to 1000 */
     assert_true(image_heat_scale(&values) == 1000.0);   /* 995, rounded up */
@@ -124,12 +122,11 @@ TEST(the_scale_ignores_the_brightest_200th)
     assert_true(image_heat_scale(&values) == 40.0);
     values.pixels[0] = values.pixels[0] > 1e8f ? values.pixels[0] : 1e9f; /* one more than 5 */
     assert_true(image_heat_scale(&values) == 1e9);
-    image_finish(&values);
 }
 
 TEST(the_scale_of_few_or_no_values)
 {
-    struct image values = fixture_flat(100, 100, 1, 0.0f);
+    own_image values = fixture_flat(100, 100, 1, 0.0f);
     assert_true(image_heat_scale(&values) == 1.0);
     values.pixels[77] = 13.0f; /* far below a 200th of the picture */
     assert_true(image_heat_scale(&values) == 15.0);
@@ -140,17 +137,16 @@ TEST(the_scale_of_few_or_no_values)
     assert_true(image_heat_scale(&values) == 2.0);
     values.pixels[3] = -2.0f;
     assert_true(image_heat_scale(&values) == 1.0);
-    image_finish(&values);
 }
 
 /* A heat map saved as PNG has exactly the codes of heat_color. */
 TEST_IN(the_file_has_the_codes_of_the_table, folder_begin, folder_end)
 {
     char *path = in_folder("heat.png");
-    struct image values = fixture_flat(500, 3, 1, 0.0f), back;
+    own_image values = fixture_flat(500, 3, 1, 0.0f), back = {0};
     for (uint32_t i = 0; i < 1500; ++i)
         values.pixels[i] = (float)i;
-    struct image heat = heat_of(&values, 1499.0, "all of them");
+    own_image heat = heat_of(&values, 1499.0, "all of them");
     assert_int_equal(heat.width, 500);
     assert_int_equal(image_save(&warnings_log, &heat, NULL, 0, path, NULL, 0), WHIT_OK);
     assert_int_equal(image_load(&warnings_log, NULL, path, NULL, &back), WHIT_OK);
@@ -163,9 +159,6 @@ TEST_IN(the_file_has_the_codes_of_the_table, folder_begin, folder_end)
             assert_int_equal((int)(code + 0.5f), codes[c]);
         }
     }
-    image_finish(&values);
-    image_finish(&heat);
-    image_finish(&back);
 }
 
 static uint32_t count_ink(const struct image *image, uint32_t first_row)
@@ -186,54 +179,45 @@ TEST(the_legend_fits_any_picture)
         "still on to the edge of the screen, which it does not heed"};
     static const double scales[] = {1.0, 13.0, 37.25, 1e-30, 1e30, 123456789.0};
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; ++s) {
-        struct image values = fixture_flat(sizes[s][0], sizes[s][1], 1, 1.0f);
+        own_image values = fixture_flat(sizes[s][0], sizes[s][1], 1, 1.0f);
         for (size_t t = 0; t < sizeof titles / sizeof titles[0]; ++t) {
-            struct image heat = heat_of(&values, scales[(s + t) % 6], titles[t]);
+            own_image heat = heat_of(&values, scales[(s + t) % 6], titles[t]);
             assert_true(heat.width >= values.width && heat.width >= 120);
             assert_true(heat.height > values.height);
             assert_true(count_ink(&heat, values.height) > 50);
             for (size_t i = 0; i < 3 * (size_t)heat.width * heat.height; ++i)
                 assert_true(heat.pixels[i] >= 0.0f && heat.pixels[i] <= 1.0f);
-            image_finish(&heat);
         }
-        image_finish(&values);
     }
 }
 
 TEST(the_title_is_drawn)
 {
-    struct image values = fixture_flat(400, 4, 1, 0.0f);
-    struct image with = heat_of(&values, 1.0, "title"), without = heat_of(&values, 1.0, "");
+    own_image values = fixture_flat(400, 4, 1, 0.0f);
+    own_image with = heat_of(&values, 1.0, "title"), without = heat_of(&values, 1.0, "");
     assert_int_equal(with.height, without.height);
     assert_true(count_ink(&with, 4) > count_ink(&without, 4) + 20);
-    image_finish(&values);
-    image_finish(&with);
-    image_finish(&without);
 }
 
 TEST(what_is_not_finite_stays_so)
 {
-    struct image values = fixture_flat(200, 1, 1, 3.0f);
+    own_image values = fixture_flat(200, 1, 1, 3.0f);
     values.pixels[5] = NAN;
     values.pixels[6] = INFINITY;
-    struct image heat = heat_of(&values, 0.0, NULL);
+    own_image heat = heat_of(&values, 0.0, NULL);
     assert_true(isnan(heat.pixels[15]) && isnan(heat.pixels[18]) && heat.pixels[12] >= 0.0f);
-    image_finish(&values);
-    image_finish(&heat);
 }
 
 TEST(other_pictures_are_refused)
 {
-    struct image out, colors = fixture_floats(4, 4, 3), words = fixture_words(4, 4, 1);
+    own_image colors = fixture_floats(4, 4, 3), words = fixture_words(4, 4, 1);
+    struct image out;
     whit_heat_params params = {0};
     assert_int_equal(image_heat(&colors, &params, &out), WHIT_ERROR_USAGE);
     assert_int_equal(image_heat(&words, &params, &out), WHIT_ERROR_USAGE);
-    struct image values = fixture_flat(4, 4, 1, 1.0f);
+    own_image values = fixture_flat(4, 4, 1, 1.0f);
     params.scale = -1.0;
     assert_int_equal(image_heat(&values, &params, &out), WHIT_ERROR_USAGE);
     params.scale = (double)NAN;
     assert_int_equal(image_heat(&values, &params, &out), WHIT_ERROR_USAGE);
-    image_finish(&colors);
-    image_finish(&words);
-    image_finish(&values);
 }

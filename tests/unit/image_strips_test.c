@@ -52,13 +52,11 @@ static void check_strips(const char *name, const struct image *image, uint32_t e
 TEST_IN(strips_have_the_bytes_of_the_whole, folder_begin, folder_end)
 {
     for (uint32_t each = IMAGE_STRIP_ROWS; each <= 64; each *= 2) {
-        struct image colors = fixture_floats(37, 75, 4), words = fixture_words(37, 75, 2);
+        own_image colors = fixture_floats(37, 75, 4), words = fixture_words(37, 75, 2);
         check_strips("a.png", &colors, each);
         check_strips("a.exr", &colors, each);
         check_strips("a.pfm", &colors, each);
         check_strips("ids.exr", &words, each);
-        image_finish(&colors);
-        image_finish(&words);
     }
     assert_int_equal(messages.count, 0);
 }
@@ -87,15 +85,12 @@ TEST_IN(too_few_or_too_many_rows_leave_no_file, folder_begin, folder_end)
 
 TEST_IN(a_strip_of_another_kind_is_refused, folder_begin, folder_end)
 {
-    struct image image = fixture_floats(8, 48, 4), words = fixture_words(8, 16, 4),
-                 wide = fixture_floats(9, 16, 4);
+    own_image image = fixture_floats(8, 48, 4), words = fixture_words(8, 16, 4),
+              wide = fixture_floats(9, 16, 4);
     const struct image *const others[] = {&words, &wide};
     for (int i = 0; i < 2; ++i) {
         struct image_rows *rows = begin(in_folder("a.exr"), &image);
         assert_int_equal(image_rows_add(rows, others[i]), WHIT_ERROR_USAGE);
         image_rows_abandon(rows);
     }
-    image_finish(&image);
-    image_finish(&words);
-    image_finish(&wide);
 }

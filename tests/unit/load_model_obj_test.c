@@ -1,6 +1,6 @@
 /* OBJ and MTL. */
-#include "image/image.h"
 #include "load_model_fixture.h"
+#include "owned_image.h"
 #include "unit.h"
 
 #define QUAD "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -261,14 +261,13 @@ TEST_IN(class_of_plain_colors, fixture_begin, fixture_end)
 /* Writes a 4x4 picture whose left half has alpha `left_alpha`. */
 static void write_picture(const char *name, float left_alpha)
 {
-    struct image image;
+    own_image image = {0};
     const char *path = put_data(name, "", 0);
     assert_int_equal(image_init(&image, 4, 4, 4, false), WHIT_OK);
     for (uint32_t i = 0; i < 16; i++)
         for (uint32_t k = 0; k < 4; k++)
             image.pixels[4 * i + k] = k == 3 && i % 4 < 2 ? left_alpha : 1.0f;
     assert_int_equal(image_save(&fixture.log, &image, NULL, 0, path, NULL, 0), WHIT_OK);
-    image_finish(&image);
 }
 
 TEST_IN(maps_with_options, fixture_begin, fixture_end)

@@ -198,7 +198,7 @@ TEST(every_effect_agrees_with_the_device)
                                                   .light_samples = 4},
                                       .whole_stops = true};
     struct fixture f = fixture_open(all_effects(), NULL, &params.picture);
-    struct image device = render(&f);
+    own_image device = render(&f);
     struct picture whole = reference_picture(f.accel, &params);
     params.whole_stops = false;
     struct picture ideal = reference_picture(f.accel, &params);
@@ -211,7 +211,6 @@ TEST(every_effect_agrees_with_the_device)
        way. The change must be larger than the device's error, else it would not show whether the
        reference rounds. */
     assert_true(stops.largest > d.largest && stops.largest < 4 * 0.006);
-    image_finish(&device);
     picture_finish(&whole);
     picture_finish(&ideal);
     fixture_close(&f);
@@ -242,12 +241,11 @@ TEST(touching_smooth_bodies_agree)
     struct reference_params params = {.picture = {.width = SIDE, .height = SIDE, .depth = 3},
                                       .whole_stops = true};
     struct fixture f = fixture_open(touching_smooth_bodies(), NULL, &params.picture);
-    struct image device = render(&f);
+    own_image device = render(&f);
     struct picture reference = reference_picture(f.accel, &params);
     struct difference d = compare(&device, &reference.color);
     print_message("  %u of %u pixels over 1e-3, largest %.2g\n", d.over, SIDE * SIDE, d.largest);
     assert_true(d.over * 500 <= SIDE * SIDE);
-    image_finish(&device);
     picture_finish(&reference);
     fixture_close(&f);
 }

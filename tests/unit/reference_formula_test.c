@@ -147,7 +147,7 @@ TEST(bodies_absorb_by_beer)
     set_sky(scene, 1, 1, 1);
     struct drawn d = open_reference(scene, &one_pixel);
     struct rays rays = reference_rays(d.reference, 0, 0, 0);
-    struct image image = draw(&d);
+    own_image image = draw(&d);
     double path = 2.0 / -rays.all[0].dir[2];
     for (int c = 0; c < 3; ++c) {
         double expected = exp(-(double)(float)absorption[c] * path);
@@ -155,7 +155,6 @@ TEST(bodies_absorb_by_beer)
         /* Rays start some 2e-11 off these faces. */
         assert_close(rays.all[rays.count - 1].weight[c], expected, 1e-10);
     }
-    image_finish(&image);
     free(rays.all);
     close_reference(&d);
 }
@@ -197,9 +196,8 @@ TEST(nothing_is_lost_in_a_furnace)
 static double pixel_light(struct scene *scene, const struct reference_params *params)
 {
     struct drawn d = open_with(scene, NULL, params);
-    struct image image = draw(&d);
+    own_image image = draw(&d);
     double light = (double)image.pixels[0];
-    image_finish(&image);
     close_reference(&d);
     return light;
 }
@@ -301,14 +299,13 @@ TEST(threads_draw_the_same_bytes)
     const whit_renderer_params picture = {
         .width = 37, .height = 41, .depth = 6, .sampling.count = 4};
     struct drawn d = open_reference(crowded_scene(), &picture);
-    struct image first = draw(&d);
+    own_image first = draw(&d);
     for (uint32_t threads = 1; threads < 4; ++threads) {
         const struct reference_params params = {.picture = picture, .thread_count = threads};
         struct picture other = reference_picture(d.accel, &params);
         assert_same_image("threads", &other.color, &first);
         picture_finish(&other);
     }
-    image_finish(&first);
     close_reference(&d);
 }
 
@@ -333,7 +330,7 @@ TEST(ray_trees_add_up_to_pixels)
 {
     const whit_renderer_params picture = {.width = 16, .height = 16, .depth = 5};
     struct drawn d = open_reference(crowded_scene(), &picture);
-    struct image image = draw(&d);
+    own_image image = draw(&d);
     uint32_t kinds = 0, ends = 0;
     for (uint32_t i = 0; i < 256; ++i) {
         struct rays rays = reference_rays(d.reference, i % 16, i / 16, 0);
@@ -353,7 +350,6 @@ TEST(ray_trees_add_up_to_pixels)
                              1u << WHIT_PROBE_BLOCKED | 1u << WHIT_PROBE_DEPTH |
                              1u << WHIT_PROBE_BAILOUT),
                      ends);
-    image_finish(&image);
     close_reference(&d);
 }
 
@@ -410,7 +406,7 @@ TEST(trees_do_not_matter)
                                        {.instances = WHIT_INSTANCES_OFF}};
     const struct reference_params params = {.picture = {.width = 24, .height = 24, .depth = 6}};
     struct drawn d = open_reference(crowded_scene(), &params.picture);
-    struct image first = draw(&d);
+    own_image first = draw(&d);
     for (size_t i = 0; i < sizeof trees / sizeof *trees; ++i) {
         struct accel *other = NULL;
         uint32_t over = 0;
@@ -425,7 +421,6 @@ TEST(trees_do_not_matter)
         picture_finish(&picture);
         accel_destroy(other);
     }
-    image_finish(&first);
     close_reference(&d);
 }
 
@@ -439,9 +434,8 @@ TEST(emitters_do_not_light_themselves)
     const double heights[] = {1.99, 0.7, -3.3, 1001.3};
     for (size_t i = 0; i < sizeof heights / sizeof *heights; ++i) {
         struct drawn d = open_with(glowing_panel(heights[i]), &flat, &params);
-        struct image image = draw(&d);
+        own_image image = draw(&d);
         assert_true(red_sum(&image) == 0.0);
-        image_finish(&image);
         close_reference(&d);
     }
 }

@@ -104,13 +104,12 @@ static void check(const char *what, const whit_accel_params *trees, void (*chang
     if (change)
         change(scene);
     struct fixture f = fixture_open(scene, trees, &params.picture);
-    struct image device = render(&f);
+    own_image device = render(&f);
     struct picture reference = reference_picture(f.accel, &params);
     double over = share_over(&device, &reference.color, 1e-3);
     print_message("  %s: %.2f %% of pixels over 1e-3, RMSE %.2g\n", what, 100.0 * over,
                   rmse(&device, &reference.color));
     assert_true(over <= 0.002); /* for edges */
-    image_finish(&device);
     picture_finish(&reference);
     fixture_close(&f);
 }
@@ -184,22 +183,17 @@ static struct image picture_by(struct fixture *f, whit_minification minification
 TEST_BY_TURNS(one_sample_is_nearer_to_the_truth, 0, 2)
 {
     struct fixture f = fixture_open(checkers(1), NULL, NULL);
-    struct image truth = picture_by(&f, WHIT_MINIFICATION_NONE, 0, 256);
-    struct image plain = picture_by(&f, WHIT_MINIFICATION_NONE, 0, 1);
-    struct image smooth = picture_by(&f, WHIT_MINIFICATION_MIPMAP, 0, 1);
-    struct image fewer = picture_by(&f, WHIT_MINIFICATION_NONE, 0, 64);
-    struct image many = picture_by(&f, WHIT_MINIFICATION_MIPMAP, 0, 256);
+    own_image truth = picture_by(&f, WHIT_MINIFICATION_NONE, 0, 256);
+    own_image plain = picture_by(&f, WHIT_MINIFICATION_NONE, 0, 1);
+    own_image smooth = picture_by(&f, WHIT_MINIFICATION_MIPMAP, 0, 1);
+    own_image fewer = picture_by(&f, WHIT_MINIFICATION_NONE, 0, 64);
+    own_image many = picture_by(&f, WHIT_MINIFICATION_MIPMAP, 0, 256);
     double before = rmse(&plain, &truth), after = rmse(&smooth, &truth);
     double left = rmse(&fewer, &truth), last = rmse(&many, &truth);
     print_message("  RMSE %.3g without, %.3g with; 64 samples without %.2g, 256 with %.2g\n",
                   before, after, left, last);
     assert_true(after < 0.8 * before);
     assert_true(last < 0.5 * left); /* with many samples mipmaps do not blur */
-    image_finish(&truth);
-    image_finish(&plain);
-    image_finish(&smooth);
-    image_finish(&fewer);
-    image_finish(&many);
     fixture_close(&f);
 }
 
@@ -211,14 +205,12 @@ TEST_BY_TURNS(magnified_textures_keep_their_bytes, 1, 2)
         params.camera = (whit_camera)CAMERA_AT(0.2, 4, 0.1, 0, 0, 0, 0, 0, -1, 40);
         params.camera.eye[1] = far ? 300.0 : 4.0;
         fixture_renew(&f, &params);
-        struct image with = render(&f);
+        own_image with = render(&f);
         params.minification = WHIT_MINIFICATION_NONE;
         fixture_renew(&f, &params);
-        struct image without = render(&f);
+        own_image without = render(&f);
         size_t bytes = (size_t)SIDE * SIDE * 4 * sizeof *with.pixels;
         assert_int_equal(memcmp(with.pixels, without.pixels, bytes) != 0, far);
-        image_finish(&with);
-        image_finish(&without);
     }
     fixture_close(&f);
 }
@@ -297,13 +289,11 @@ TEST(levels_that_do_not_fit_are_left_out)
     bool fits = device_get_info(f.device)->max_storage_range_bytes / 4 >
                 mipmap_first(side, side, MIPMAP_LEVELS_MAX);
     fixture_renew(&f, &params);
-    struct image with = render(&f);
+    own_image with = render(&f);
     params.minification = WHIT_MINIFICATION_NONE;
     fixture_renew(&f, &params);
-    struct image without = render(&f);
+    own_image without = render(&f);
     size_t bytes = (size_t)SIDE * SIDE * 4 * sizeof *with.pixels;
     assert_int_equal(memcmp(with.pixels, without.pixels, bytes) != 0, fits);
-    image_finish(&with);
-    image_finish(&without);
     fixture_close(&f);
 }

@@ -148,7 +148,7 @@ TEST_BY_TURNS(lens_and_plain_scenes_too, 1, 2)
 
 TEST(marks_come_in_pairs)
 {
-    struct image image = {0};
+    own_image image = {0};
     uint8_t levels[12];
     assert_int_equal(image_init(&image, 4, 3, 4, false), WHIT_OK);
     memset(levels, 1, sizeof levels);
@@ -158,7 +158,6 @@ TEST(marks_come_in_pairs)
     assert_true(adaptive_mark(&image, 0.999, 2, levels) == 9);
     const uint8_t expected[12] = {2, 2, 2, 1, 2, 2, 2, 1, 2, 2, 2, 1};
     assert_memory_equal(levels, expected, sizeof levels);
-    image_finish(&image);
 }
 
 static bool stop_now;

@@ -125,20 +125,17 @@ TEST(both_kernels_draw_the_same)
         struct fixture f = fixture_open(make[i](), NULL, &params);
         whit_stats begun = stats_of(f.renderer);
         assert_true(begun.general);
-        struct image first = render_general(&f), second = render_specialised(&f);
+        own_image first = render_general(&f), second = render_specialised(&f);
         whit_stats done = stats_of(f.renderer);
         assert_null(f.renderer->async.job);
         assert_true(done.kernel_instructions < begun.kernel_instructions);
         params.compile_async = false;
         fixture_renew(&f, &params);
         assert_false(stats_of(f.renderer).general);
-        struct image at_once = render(&f);
+        own_image at_once = render(&f);
         assert_int_equal(stats_of(f.renderer).kernel_instructions, done.kernel_instructions);
         assert_same_image("general", &first, &at_once);
         assert_same_image("specialised", &second, &at_once);
-        image_finish(&first);
-        image_finish(&second);
-        image_finish(&at_once);
         fixture_close(&f);
     }
 }
@@ -150,12 +147,10 @@ TEST(removed_effects_stay_removed)
     params.shadows = WHIT_SHADOWS_NONE;
     params.effects_removed |= UINT64_C(1) << SCENE_EFFECT_REFLECTION;
     struct fixture f = fixture_open(glass_scene(), NULL, &params);
-    struct image first = render_general(&f), second = render_specialised(&f);
+    own_image first = render_general(&f), second = render_specialised(&f);
     assert_same_image("specialised", &first, &second);
     assert_int_equal(stats_of(f.renderer).rays_shadow, 0);
     assert_int_equal(stats_of(f.renderer).rays_reflected, 0);
-    image_finish(&first);
-    image_finish(&second);
     fixture_close(&f);
 }
 

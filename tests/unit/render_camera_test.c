@@ -97,7 +97,7 @@ TEST(blur_has_its_size)
     for (int i = 0; i < 3; ++i) {
         double blur = 2.0 * fabs(1.0 / depths[i] - 0.2) / pixel;
         double expected = sqrt(0.5 * (blur * blur + ball * ball));
-        struct image image = lens_picture(depths[i], 2.0f, 64, ball * pixel);
+        own_image image = lens_picture(depths[i], 2.0f, 64, ball * pixel);
         struct patch p = measure(&image);
         print_message("  at %g: radius %.2f of %.2f pixels, rms %.2f of %.2f, centre %.3f %.3f\n",
                       depths[i], p.farthest, blur + ball, sqrt(p.mean2), expected, p.center[0],
@@ -105,16 +105,13 @@ TEST(blur_has_its_size)
         assert_true(fabs(p.farthest - (blur + ball)) <= 1.0);
         assert_true(fabs(sqrt(p.mean2) - expected) <= 0.02 * expected + 0.05);
         assert_true(hypot(p.center[0], p.center[1]) < 0.006 * blur + 0.05);
-        image_finish(&image);
     }
 }
 
 TEST(one_sample_is_a_pinhole)
 {
-    struct image lens = lens_picture(10.0, 2.0f, 1, 0.03), hole = lens_picture(10.0, 0.0f, 1, 0.03);
+    own_image lens = lens_picture(10.0, 2.0f, 1, 0.03), hole = lens_picture(10.0, 0.0f, 1, 0.03);
     assert_same_image("one sample", &lens, &hole);
-    image_finish(&lens);
-    image_finish(&hole);
 }
 
 /* All rays of one place of a pixel meet in one point of the focus plane, whatever the point of the
@@ -209,7 +206,7 @@ TEST(markers_are_where_they_should)
         struct scene *scene = panorama_scene(eye, target);
         add_marker(scene, 0.5, at[0], at[1], at[2]); /* less than 3 degrees: no seam in between */
         const whit_renderer_params params = {.width = WIDTH, .height = HEIGHT, .sampling.count = 4};
-        struct image image = color_of(scene, NULL, &params);
+        own_image image = color_of(scene, NULL, &params);
         if (places[p][0] > 170.0) /* across the seam the picture goes on */
             swap_halves(&image);
         struct patch seen = measure(&image);
@@ -218,7 +215,6 @@ TEST(markers_are_where_they_should)
         print_message("  %g %g: %.2f %.2f, expected %.2f %.2f\n", places[p][0], places[p][1],
                       seen.center[0], seen.center[1], x, y);
         assert_true(fabs(seen.center[0] - x) < 0.5 && fabs(seen.center[1] - y) < 0.5);
-        image_finish(&image);
     }
 }
 
@@ -232,7 +228,7 @@ TEST(panorama_sees_all_around)
         scene->meshes[0].materials[2 * face] = scene->meshes[0].materials[2 * face + 1] = index;
     }
     const whit_renderer_params params = {.width = 128, .height = 64};
-    struct image image = color_of(scene, NULL, &params);
+    own_image image = color_of(scene, NULL, &params);
     double shares[6] = {0}, all = 0.0;
     for (uint32_t y = 0; y < 64; ++y) {
         for (uint32_t x = 0; x < 128; ++x) {
@@ -245,7 +241,6 @@ TEST(panorama_sees_all_around)
     }
     for (int face = 0; face < 6; ++face)
         assert_true(fabs(shares[face] / all - 1.0 / 6.0) < 0.005);
-    image_finish(&image);
 }
 
 /* ---- Odd views ---- */
@@ -267,7 +262,7 @@ TEST(view_along_up_has_a_picture)
     for (size_t i = 0; i < sizeof views / sizeof *views; ++i) {
         params.camera = views[i];
         fixture_renew(&f, &params);
-        struct image image = render(&f);
+        own_image image = render(&f);
         assert_finite(&image);
         assert_near(middle(&image)[0], 1.0, 2e-6);
         /* The floor is seen upright or turned by a quarter: as wide as high. */
@@ -276,7 +271,6 @@ TEST(view_along_up_has_a_picture)
             lit += image.pixels[4 * p] > 0.5f;
         uint32_t side = (uint32_t)lround(sqrt((double)lit));
         assert_int_equal(side * side, lit);
-        image_finish(&image);
     }
     fixture_close(&f);
 }
@@ -293,7 +287,7 @@ TEST(angles_of_view_are_kept)
         const whit_renderer_params params = {
             .width = 9, .height = 101, .camera = CAMERA_AT(0, 0, 0, 0, 0, -1, 0, 1, 0, angles[i])};
         struct fixture f = fixture_open(scene, NULL, &params);
-        struct image image = render(&f);
+        own_image image = render(&f);
         assert_finite(&image);
         float angle = (float)(angles[i] * PI / 180.0); /* as the camera holds it */
         double half = tan(0.5 * (double)angle) * 100.0 / 101.0;
@@ -305,7 +299,6 @@ TEST(angles_of_view_are_kept)
         assert_near(ray.dir[2], -1.0 / sqrt(1.0 + half * half), 1e-6);
         /* The sky's gradient makes the pixel's value the y of the ray's direction. */
         assert_near(image.pixels[4 * 4], (double)ray.dir[1], 1e-6);
-        image_finish(&image);
         fixture_close(&f);
     }
 }
@@ -320,9 +313,8 @@ TEST(rays_along_edges_hit)
     /* Its diagonals go through pixel middles. */
     add_object(scene, mesh_box(4, 4, 1), unlit(1, 1, 1), 0, 0, 0);
     const whit_renderer_params params = {.width = SIDE, .height = SIDE};
-    struct image image = color_of(scene, NULL, &params);
+    own_image image = color_of(scene, NULL, &params);
     assert_range(&image, 1, 1);
-    image_finish(&image);
 }
 
 TEST(faces_seen_edge_on_are_finite)
@@ -333,9 +325,8 @@ TEST(faces_seen_edge_on_are_finite)
     /* Its top is in the plane of the middle row and of the light. */
     add_object(scene, mesh_box(1, 2, 1), m, 0, 0, 0);
     scene_put_sun(scene, 0, 0, -1, 1.0f);
-    struct image image = color_of(scene, NULL, &picture_params);
+    own_image image = color_of(scene, NULL, &picture_params);
     assert_finite(&image);
-    image_finish(&image);
 }
 
 /* Every pixel of pictures of odd sizes sees what the C traversal of its ray hits. */
@@ -381,8 +372,7 @@ TEST(near_and_far_share_a_picture)
     add_object(scene, mesh_box(2e-6, 2e-6, 1e-7), near, -1e-6, 0, -1.05e-6);
     add_object(scene, mesh_box(2e6, 2e6, 1e5), far, 0, 0, -1.05e6);
     const whit_renderer_params params = {.width = 40, .height = 20, .sampling.count = 4};
-    struct image image = color_of(scene, NULL, &params);
+    own_image image = color_of(scene, NULL, &params);
     for (uint32_t p = 0; p < 40 * 20; ++p)
         assert_near(image.pixels[4 * p], p % 40 < 20 ? 0.25 : 0.75, 0.0);
-    image_finish(&image);
 }

@@ -540,7 +540,7 @@ static void check_who_refracts(whit_classes classes)
     params.count = true;
     params.classes = classes;
     struct fixture f = fixture_open(quarters_scene(), NULL, &params);
-    struct image reflected = {0}, refracted = {0};
+    own_image reflected = {0}, refracted = {0};
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     assert_int_equal(renderer_read_costs(f.renderer, RAY_REFLECTED, &reflected), WHIT_OK);
     assert_int_equal(renderer_read_costs(f.renderer, RAY_REFRACTED, &refracted), WHIT_OK);
@@ -556,8 +556,6 @@ static void check_who_refracts(whit_classes classes)
                 assert_true(mirrored[at].rays > 0);
         }
     }
-    image_finish(&reflected);
-    image_finish(&refracted);
     fixture_close(&f);
 }
 

@@ -153,7 +153,7 @@ TEST(bailout_keeps_its_bound)
 {
     const double bailouts[] = {-1.0, 1.0 / 16, 1.0 / 64, 1.0 / 256};
     for (int which = 0; which < 2; ++which) {
-        struct image full = {0};
+        own_image full = {0};
         for (int i = 0; i < 4; ++i) {
             const whit_renderer_params params = {.width = 40,
                                                  .height = 40,
@@ -178,6 +178,5 @@ TEST(bailout_keeps_its_bound)
             }
             picture_finish(&picture);
         }
-        image_finish(&full);
     }
 }

@@ -6,6 +6,7 @@
 #include "../scenes.h"
 #include "accel/validate.h"
 #include "base/array.h"
+#include "owned_image.h"
 #include "render/render.h"
 #include "unit.h"
 

@@ -69,7 +69,7 @@ static void check_form_factor(struct scene_light light, uint32_t samples, double
     struct scene *scene = floor_scene(eye_height);
     const struct scene_light copy = light;
     scene_put_light(scene, light);
-    struct image image = color_of(scene, NULL, &params);
+    own_image image = color_of(scene, NULL, &params);
     for (uint32_t y = 0; y < SIDE; y += 2) {
         for (uint32_t x = 0; x < SIDE; x += 2) {
             double p[3];
@@ -78,7 +78,6 @@ static void check_form_factor(struct scene_light light, uint32_t samples, double
             assert_near(image.pixels[4 * (y * SIDE + x)], expected, tolerance);
         }
     }
-    image_finish(&image);
 }
 
 TEST_BY_TURNS(emitters_give_their_integral, 0, 4)
@@ -119,12 +118,11 @@ TEST_BY_TURNS(half_a_cover_takes_half, 1, 4)
         struct scene *scene = floor_scene(eye_height);
         add_object(scene, mesh_plane(4), material_plain("plate"), 2.0, 1.0, 0);
         scene_put_light(scene, light);
-        struct image image = color_of(scene, NULL, &params);
+        own_image image = color_of(scene, NULL, &params);
         double share = (double)image.pixels[0] / whole;
         print_message("  %s of %u points: share %.4f\n", i % 2 ? "triangle" : "rectangle",
                       samples[i / 2], share);
         assert_true(fabs(share - 0.5) <= 1.0 / samples[i / 2] + 1e-5);
-        image_finish(&image);
     }
 }
 
@@ -144,13 +142,12 @@ TEST_BY_TURNS(pixel_samples_smooth_shadows, 2, 4)
                                        .light_samples = 4,
                                        .camera =
                                            CAMERA_AT(-0.5, 1.4, 0, -0.5, 0, 0, 0, 0, -1, 0.2)};
-        struct image image = color_of(scene, NULL, &params);
+        own_image image = color_of(scene, NULL, &params);
         largest[i] = 0.0;
         for (uint32_t x = 1; x < image.width; ++x)
             largest[i] =
                 fmax(largest[i], fabs((double)(image.pixels[4 * x] - image.pixels[4 * (x - 1)])));
         assert_true(red_sum(&image) > 0.0);
-        image_finish(&image);
     }
     print_message("  largest step %.4f, with 16 samples %.4f\n", largest[0], largest[1]);
     assert_true(largest[1] < 0.35 * largest[0]);
@@ -170,7 +167,7 @@ TEST_BY_TURNS(spots_fall_off_between_their_cones, 3, 4)
     set_rgb(light.color, 5, 5, 5);
     scene_put_light(scene, light);
     whit_renderer_params params = {.width = 33, .height = 33};
-    struct image image = color_of(scene, NULL, &params);
+    own_image image = color_of(scene, NULL, &params);
     uint32_t full = 0, soft = 0, dark = 0;
     for (uint32_t y = 0; y < 33; ++y) {
         for (uint32_t x = 0; x < 33; ++x) {
@@ -192,7 +189,6 @@ TEST_BY_TURNS(spots_fall_off_between_their_cones, 3, 4)
         }
     }
     assert_true(full > 20 && soft > 100 && dark > 100);
-    image_finish(&image);
 }
 
 TEST_BY_TURNS(ranges_end_lights, 0, 4)
@@ -201,7 +197,7 @@ TEST_BY_TURNS(ranges_end_lights, 0, 4)
     scene_put_lamp(scene, 0, 1, 0, 2.0f);
     scene->lights[0].range = 1.5f;
     whit_renderer_params params = {.width = 33, .height = 33};
-    struct image image = color_of(scene, NULL, &params);
+    own_image image = color_of(scene, NULL, &params);
     for (uint32_t i = 0; i < 33 * 33; ++i) {
         double p[3];
         floor_point(i % 33, i / 33, 33, p);
@@ -213,7 +209,6 @@ TEST_BY_TURNS(ranges_end_lights, 0, 4)
         if (square > 2.26)
             assert_true(image.pixels[4 * i] == 0.0f);
     }
-    image_finish(&image);
 }
 
 /* Without lights, with lights in the surface itself, without power or with far too much power, all
@@ -232,10 +227,9 @@ TEST_BY_TURNS(odd_lights_give_finite_pictures, 1, 4)
         else if (i > 0)
             scene_put_lamp(scene, 0, i == 1 ? 0.0 : 1e-6, 0, strength);
         whit_renderer_params params = {.width = 33, .height = 33};
-        struct image image = color_of(scene, NULL, &params);
+        own_image image = color_of(scene, NULL, &params);
         assert_range(&image, 0, FLT_MAX);
         assert_true(i != 2 || red_sum(&image) == 0.0);
-        image_finish(&image);
     }
 }
 
@@ -250,7 +244,7 @@ TEST_BY_TURNS(lamps_next_to_a_surface_are_on_one_side, 2, 4)
         struct scene *scene = floor_scene(eye_height);
         double worst = 0.0;
         scene_put_lamp(scene, 0, heights[i], 0, 1.0f);
-        struct image image = color_of(scene, NULL, &params);
+        own_image image = color_of(scene, NULL, &params);
         for (uint32_t k = 0; k < ACROSS * ACROSS; ++k) {
             double p[3], value = (double)image.pixels[4 * k];
             floor_point(k % ACROSS, k / ACROSS, ACROSS, p);
@@ -265,7 +259,6 @@ TEST_BY_TURNS(lamps_next_to_a_surface_are_on_one_side, 2, 4)
         }
         print_message("  at %g: off by %.2g at most\n", heights[i], worst);
         assert_true(worst <= 2e-4);
-        image_finish(&image);
     }
 }
 
@@ -279,9 +272,8 @@ TEST_BY_TURNS(emitters_do_not_light_themselves, 3, 4)
     for (size_t i = 0; i < 2 * sizeof heights / sizeof *heights; ++i) {
         const whit_accel_params trees = {.instances =
                                              i % 2 ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON};
-        struct image image = color_of(glowing_panel(heights[i / 2]), &trees, &params);
+        own_image image = color_of(glowing_panel(heights[i / 2]), &trees, &params);
         assert_true(red_sum(&image) == 0.0);
-        image_finish(&image);
     }
 }
 
@@ -360,15 +352,13 @@ TEST(packets_to_a_light_shade_as_rays_do)
             .numerics = cases[i].exact ? NUMERICS_EXACT : NUMERICS_WATERTIGHT};
         struct fixture f =
             fixture_open(rings_under(light, cases[i].moved, cases[i].slope), &accel, &params);
-        struct image alone = render(&f);
+        own_image alone = render(&f);
         params.packets = WHIT_PACKETS_ON;
         fixture_renew(&f, &params);
-        struct image together = render(&f);
+        own_image together = render(&f);
         print_message("  light %zu: sum %g\n", i, red_sum(&alone));
         assert_true(red_sum(&alone) > 0.0);
         assert_same_image("packets", &alone, &together);
-        image_finish(&alone);
-        image_finish(&together);
         fixture_close(&f);
     }
 }

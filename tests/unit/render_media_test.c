@@ -56,7 +56,7 @@ static void pass_layers(const struct stack *s, double slope, double *aside, doub
 static void check_layers(const struct stack *s)
 {
     const whit_renderer_params params = {.width = 24, .height = 24, .depth = (uint32_t)s->count};
-    struct image image = color_of(layer_scene(s->layers, s->layer_count), NULL, &params);
+    own_image image = color_of(layer_scene(s->layers, s->layer_count), NULL, &params);
     double worst = 0.0, worst_share = 0.0;
     for (uint32_t i = 0; i < 24 * 24; ++i) {
         const float *color = &image.pixels[4 * (size_t)i];
@@ -74,7 +74,6 @@ static void check_layers(const struct stack *s)
        bound of a hit point (docs/numerics.md). Light: a few roundings a Fresnel term. */
     assert_true(worst < (s->count + 1) * 7 * 20 * 0x1p-24);
     assert_true(worst_share < s->count * 8 * 0x1p-24);
-    image_finish(&image);
 }
 
 TEST_BY_TURNS(layers_bend_as_snell_says, 0, 4)
@@ -193,13 +192,12 @@ TEST(ninth_medium_is_an_error)
         const whit_renderer_params params = {
             .width = 8, .height = 8, .depth = 20, .bailout = WHIT_BAILOUT_DEFAULT};
         struct fixture f = fixture_open(shell_scene(counts[i]), NULL, &params);
-        struct image image = {0};
+        own_image image = {0};
         assert_int_equal(renderer_render(f.renderer), i == 0 ? WHIT_OK : WHIT_ERROR_STATUS);
         if (i == 0) {
             assert_int_equal(renderer_read_color(f.renderer, &image), WHIT_OK);
             assert_true(middle(&image)[0] > 0.9f && middle(&image)[0] < 1.0001f);
         }
-        image_finish(&image);
         fixture_close(&f);
     }
 }
@@ -227,9 +225,8 @@ TEST_BY_TURNS(open_meshes_stay_finite, 3, 4)
     const whit_renderer_params params = {.width = 40, .height = 40, .depth = 8};
     struct fixture f = fixture_open(scene, NULL, &params);
     assert_int_equal(f.renderer->frame.nested, 1);
-    struct image image = render(&f);
+    own_image image = render(&f);
     assert_range(&image, 0, 1.001);
-    image_finish(&image);
     fixture_close(&f);
 }
 
@@ -288,7 +285,7 @@ TEST_BY_TURNS(snells_window_is_where_it_should_be, 1, 4)
     set_sky(scene, 1, 1, 0);
     add_object(scene, mesh_box(60, 20, 60), clear_glass(1.33f, 0), 0, -10, 0);
     const whit_renderer_params params = {.width = 101, .height = 101, .depth = 1};
-    struct image image = color_of(scene, NULL, &params);
+    own_image image = color_of(scene, NULL, &params);
     double critical = tan(asin(1.0 / (double)1.33f)), pixel = 2.0 * tan(1.0) / 101;
     int lit = 0, close = 0;
     for (uint32_t i = 0; i < 101 * 101; ++i) {
@@ -304,7 +301,6 @@ TEST_BY_TURNS(snells_window_is_where_it_should_be, 1, 4)
     }
     print_message("  %d pixels see the sky, %d are too close to tell\n", lit, close);
     assert_true(lit > 1000 && close < 4);
-    image_finish(&image);
 }
 
 /* ---- Edges ---- */
@@ -369,7 +365,7 @@ TEST_BY_TURNS(edges_are_crossed_once, 2, 4)
         add_object(scene, octahedron ? octahedron_mesh() : mesh_box(2, 2, 4), m, 0, 0,
                    octahedron - 1);
         const whit_renderer_params params = {.width = SIDE, .height = SIDE, .depth = 6};
-        struct image image = color_of(scene, NULL, &params);
+        own_image image = color_of(scene, NULL, &params);
         uint32_t through = 0;
         for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
             double slope[2];
@@ -391,7 +387,6 @@ TEST_BY_TURNS(edges_are_crossed_once, 2, 4)
         /* gamma(7) of coordinates up to 4 at both ends of the way, at 60 degrees and less but for
            the outline, where the way is short */
         assert_true(worst < 1e-5);
-        image_finish(&image);
     }
 }
 
@@ -453,15 +448,13 @@ TEST_BY_TURNS(liquid_in_a_glass, 3, 4)
         {"gap of 1e-5, no contact", -1e-5, 1, 0, 1.33, 1e-2, MANY + 1, ALL},
         {"no liquid", -0.2, 1, 0, 1.0, 1e-2, MANY + 1, ALL},
     };
-    struct image touching = liquid_picture(0, 1, 0, 1.33);
+    own_image touching = liquid_picture(0, 1, 0, 1.33);
     for (size_t i = 0; i < sizeof ways / sizeof *ways; ++i) {
-        struct image other =
+        own_image other =
             liquid_picture(ways[i].overlap, ways[i].glass_priority, ways[i].contact, ways[i].ior);
         uint32_t over = count_over(&touching, &other, ways[i].tolerance);
         print_message("  %s: %u of %d pixels differ by more than %g\n", ways[i].name, over,
                       LIQUID_PIXELS, ways[i].tolerance);
         assert_in_range(over, ways[i].min, ways[i].max);
-        image_finish(&other);
     }
-    image_finish(&touching);
 }

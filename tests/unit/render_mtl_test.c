@@ -93,12 +93,11 @@ static double expected(const struct strip *strip, bool schlick, int c)
 
 static void write_picture(const char *name, int code)
 {
-    struct image image;
+    own_image image = {0};
     assert_int_equal(image_init(&image, 1, 1, 3, false), WHIT_OK);
     for (int k = 0; k < 3; k++)
         image.pixels[k] = image_linear_from_srgb((float)code / 255.0f);
     assert_int_equal(image_save(&fixture_log, &image, NULL, 0, name, NULL, 0), WHIT_OK);
-    image_finish(&image);
 }
 
 /* Strip i lies at y = 0 from x = i to i + 1. */
@@ -175,9 +174,8 @@ static const whit_renderer_params strip_params = {.width = STRIPS, .height = 1, 
 
 TEST(classes_mean_what_the_format_says)
 {
-    struct image image = render_strips(&strip_params);
+    own_image image = render_strips(&strip_params);
     check_strips(&image, false);
-    image_finish(&image);
 }
 
 /* --fresnel schlick works with every set of compiled effects. */
@@ -185,11 +183,9 @@ TEST(schlick_takes_the_place_of_fresnel)
 {
     whit_renderer_params params = strip_params;
     params.schlick = true;
-    struct image image = render_strips(&params);
+    own_image image = render_strips(&params);
     params.all_effects = true;
-    struct image all = render_strips(&params);
+    own_image all = render_strips(&params);
     check_strips(&image, true);
     assert_same_image("with every effect", &image, &all);
-    image_finish(&image);
-    image_finish(&all);
 }

@@ -22,13 +22,12 @@ TEST_BY_TURNS(glass_slab_passes_and_absorbs, 0, 4)
     add_object(scene, mesh_box(9, 9, 0.1), unlit(1, 1, 1), 0, 0, -4);
     whit_renderer_params params = picture_params;
     params.depth = 12;
-    struct image image = color_of(scene, NULL, &params);
+    own_image image = color_of(scene, NULL, &params);
     /* A slab with inner reflections: T = (1-R)^2 a / (1 - R^2 a^2), a = exp(-sigma d), wall 1
        behind and darkness before. Rays below 1/1024 of the pixel are not followed. */
     double r = pow((ior - 1) / (ior + 1), 2), a = exp(-sigma * thickness);
     assert_near(middle(&image)[0], (1 - r) * (1 - r) * a / (1 - r * r * a * a), 3e-3);
     assert_near(middle(&image)[1], (1 - r) * (1 - r) / (1 - r * r), 3e-3);
-    image_finish(&image);
 }
 
 /* A picture of one texel, all channels `value`. */
@@ -57,17 +56,14 @@ static struct image transmitting_box(float transmission, int texel)
 
 TEST_BY_TURNS(texture_of_transmission_decides, 1, 4)
 {
-    struct image opaque = transmitting_box(0.0f, -1);
-    struct image masked = transmitting_box(1.0f, 0);
-    struct image clear = transmitting_box(1.0f, 255);
+    own_image opaque = transmitting_box(0.0f, -1);
+    own_image masked = transmitting_box(1.0f, 0);
+    own_image clear = transmitting_box(1.0f, 255);
     for (int c = 0; c < 3; ++c) {
         assert_near(middle(&masked)[c], (double)middle(&opaque)[c], 1e-6);
         assert_true(middle(&opaque)[c] > 0.3f);
         assert_true(middle(&clear)[c] < 0.1f);
     }
-    image_finish(&opaque);
-    image_finish(&masked);
-    image_finish(&clear);
 }
 
 /* The radiance of a smooth black box under a white sky, which only reflects the sky. */
@@ -87,10 +83,8 @@ static float mirrored(float level, float tint, enum scene_slot slot, int texel)
     scene_put_sun(scene, 0, -1, 0, 0.0f); /* no light of whit's own */
     whit_renderer_params params = picture_params;
     params.bailout = 0.0;
-    struct image image = color_of(scene, NULL, &params);
-    float seen = middle(&image)[1];
-    image_finish(&image);
-    return seen;
+    own_image image = color_of(scene, NULL, &params);
+    return middle(&image)[1];
 }
 
 TEST_BY_TURNS(textures_of_specular_scale_it, 2, 4)
@@ -443,7 +437,7 @@ TEST(weights_of_cut_rays_are_those_of_their_pixels)
     const whit_renderer_params params = {.width = 64, .height = 48, .bailout = 0.05};
     struct fixture f = fixture_open(mixed_scene(), NULL, &params);
     struct picture picture = render_picture(&f);
-    struct image cuts;
+    own_image cuts = {0};
     size_t missed = 0, cut = 0;
     assert_int_equal(renderer_read_cuts(f.renderer, &cuts), WHIT_OK);
     for (size_t i = 0; i < (size_t)params.width * params.height; ++i) {
@@ -454,7 +448,6 @@ TEST(weights_of_cut_rays_are_those_of_their_pixels)
         cut += has;
     }
     assert_true(missed > 0 && cut > 0);
-    image_finish(&cuts);
     picture_finish(&picture);
     fixture_close(&f);
 }
@@ -524,13 +517,11 @@ TEST(cancel_and_time_limit_stop)
 TEST(pictures_may_be_dropped)
 {
     struct fixture f = fixture_open(mixed_scene(), NULL, &picture_params);
-    struct image before = render(&f);
+    own_image before = render(&f);
     scene_drop_pictures(f.scene);
-    struct image after = render(&f);
+    own_image after = render(&f);
     assert_same_image("dropped pictures", &before, &after);
     fixture_refuses(&f, &picture_params, 1);
-    image_finish(&before);
-    image_finish(&after);
     fixture_close(&f);
 }
 

@@ -187,7 +187,7 @@ static struct sums probe_picture(struct fixture *f)
     }
     /* The picture and its figures are what they were. */
     whit_stats later;
-    struct image after = {0};
+    own_image after = {0};
     renderer_get_stats(f->renderer, &later);
     assert_int_equal(later.dispatches, stats->dispatches);
     assert_true(later.render_ms == stats->render_ms);
@@ -202,7 +202,6 @@ static struct sums probe_picture(struct fixture *f)
                   (unsigned long long)sums.passed, (unsigned long long)sums.exact_equal,
                   (unsigned long long)sums.exact);
     picture_finish(&before);
-    image_finish(&after);
     return sums;
 }
 
@@ -370,7 +369,7 @@ TEST(color_is_of_all_samples)
     fixture_close(&f);
     assert_int_equal(four.kinds[RAY_PRIMARY], 4 * 4);
     /* An adaptive picture begins with 4 samples. */
-    struct image picture = color_of(glass_scene(), NULL, &params);
+    own_image picture = color_of(glass_scene(), NULL, &params);
     params.sampling.count = 0;
     params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 1.0};
     f = fixture_open(glass_scene(), NULL, &params);
@@ -378,7 +377,6 @@ TEST(color_is_of_all_samples)
     assert_int_equal(report.samples, 4);
     assert_memory_equal(report.color, &picture.pixels[4 * (2 * 4 + 3)], 3 * sizeof(float));
     probe_report_finish(&report);
-    image_finish(&picture);
     fixture_close(&f);
 }
 

@@ -31,7 +31,7 @@ TEST(slab_keeps_directions)
     set_height_sky(scene);
     add_object(scene, mesh_box(20, 20, 2 * SLAB_HALF), clear_glass((float)SLAB_IOR, 0), 0, 0, 0);
     const whit_renderer_params params = {.width = 24, .height = 24, .depth = 8};
-    struct image image = color_of(scene, NULL, &params);
+    own_image image = color_of(scene, NULL, &params);
     double worst = 0.0;
     for (uint32_t i = 0; i < 24 * 24; ++i) {
         const float *color = &image.pixels[4 * (size_t)i];
@@ -42,7 +42,6 @@ TEST(slab_keeps_directions)
     }
     print_message("  directions are off by %.2g\n", worst);
     assert_true(worst <= 2e-6); /* NUMERICS O4: some ten roundings of a unit vector */
-    image_finish(&image);
 }
 
 /* ---- A ball lens ---- */
@@ -91,7 +90,7 @@ TEST(ball_bends_rays_to_its_focus)
         add_object(scene, mesh_balls((double[]){0, 0, 0, 1}, 1), clear_glass(1.5f, 0), 0, 0, 0);
         add_coordinate_wall(scene, -walls[w], 4);
         const whit_renderer_params params = {.width = 32, .height = 32, .depth = 2};
-        struct image image = color_of(scene, NULL, &params);
+        own_image image = color_of(scene, NULL, &params);
         double worst = 0;
         uint32_t through = 0;
         for (uint32_t i = 0; i < 32 * 32; ++i) {
@@ -114,7 +113,6 @@ TEST(ball_bends_rays_to_its_focus)
            error of the normal into up to twice that of the direction this far from the rim, and the
            wall is up to 6 away. */
         assert_true(worst < 8 * 5 * 0x1p-24 * 2 * 2 * (1 + walls[w]));
-        image_finish(&image);
     }
     assert_true(spread[1] < 0.1 * spread[0] && spread[1] < 0.1 * spread[2]);
 }
@@ -178,7 +176,7 @@ TEST(beer_from_nothing_to_infinity)
         set_rgb(m.absorption, 0, absorptions[i], 1.0f);
         add_object(scene, mesh_box(20, 20, 1), m, 0, 0, 0);
         const whit_renderer_params params = {.width = 1, .height = 1, .depth = 4};
-        struct image image = color_of(scene, NULL, &params);
+        own_image image = color_of(scene, NULL, &params);
         const float *color = image.pixels;
         assert_true(color[0] == 1.0f);
         /* scene_freeze replaces values that are not finite by 0. */
@@ -189,7 +187,6 @@ TEST(beer_from_nothing_to_infinity)
         assert_true(fabs((double)color[1] - expected) <=
                     expected * (8 + 2 * fmin((double)absorptions[i], 100)) * 0x1p-23 + 1.2e-38);
         assert_near(color[2], exp(-1), 10 * 0x1p-23);
-        image_finish(&image);
     }
 }
 
@@ -215,10 +212,9 @@ TEST(endless_media_are_dark)
     add_object(scene, cube, m, 0, 0, 0);
     const whit_renderer_params params = {.width = 1, .height = 1, .depth = 4};
     struct fixture f = fixture_open(scene, NULL, &params);
-    struct image image = render(&f);
+    own_image image = render(&f);
     assert_true(f.renderer->frame.eye_media0 != 0);
     assert_true(image.pixels[0] == 1.0f && image.pixels[1] < 1e-37f && image.pixels[2] < 1e-37f);
-    image_finish(&image);
     fixture_close(&f);
 }
 
@@ -241,9 +237,8 @@ TEST(paths_are_reversible)
             add_object(scene, mesh_box(1, 1, 1), unlit(1, 1, 1), way ? -slopes[i] * 3 : tangent * 3,
                        way ? 3 : -3, 0);
             const whit_renderer_params params = {.width = 1, .height = 1, .depth = 1};
-            struct image image = color_of(scene, NULL, &params);
+            own_image image = color_of(scene, NULL, &params);
             share[way] = (double)image.pixels[0];
-            image_finish(&image);
         }
         double expected = 1 - fresnel(sqrt(1 - sine * sine), 1, 1.5);
         print_message("  %.7f there, %.7f back, by formula %.7f\n", share[0], share[1], expected);

@@ -51,9 +51,8 @@ static void draw(uint32_t first, uint32_t count, uint32_t tile_size, float *pixe
                                          .sampling.count = count};
     f.renderer->params.tile_size = tile_size;
     assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
-    struct image image = render(&f);
+    own_image image = render(&f);
     memcpy(pixels, image.pixels, FLOATS * sizeof *pixels);
-    image_finish(&image);
 }
 
 static void draw_parts(uint32_t each)

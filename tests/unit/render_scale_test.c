@@ -52,16 +52,14 @@ static void scale_scene(struct scene *scene, double by)
 static void compare_sizes(bool lamp, const double *scales, size_t count)
 {
     const whit_renderer_params params = {.width = 48, .height = 36, .depth = 6};
-    struct image first = color_of(still_life(lamp), NULL, &params);
+    own_image first = color_of(still_life(lamp), NULL, &params);
     for (size_t i = 0; i < count; ++i) {
         struct scene *scene = still_life(lamp);
         scale_scene(scene, scales[i]);
-        struct image image = color_of(scene, NULL, &params);
+        own_image image = color_of(scene, NULL, &params);
         print_message("  %g times as large\n", scales[i]);
         assert_same_image("another size", &image, &first);
-        image_finish(&image);
     }
-    image_finish(&first);
 }
 
 TEST(pictures_do_not_depend_on_the_unit)

@@ -16,19 +16,17 @@ static uint32_t add_texel(struct scene *scene, uint8_t r, uint8_t g, uint8_t b)
 /* Asserts that all channels of all pixels are `expected`. */
 static void assert_even(struct scene *scene, double expected, double relative)
 {
-    struct image image = color_of(scene, NULL, &all_params);
+    own_image image = color_of(scene, NULL, &all_params);
     for (int i = 0; i < SIDE * SIDE; ++i)
         for (int c = 0; c < 3; ++c)
             assert_near(image.pixels[4 * i + c], expected, relative);
-    image_finish(&image);
 }
 
 /* Asserts that all pixels are numbers from 0 to `max`. */
 static void assert_sane(struct scene *scene, double max)
 {
-    struct image image = color_of(scene, NULL, &all_params);
+    own_image image = color_of(scene, NULL, &all_params);
     assert_range(&image, 0, max);
-    image_finish(&image);
 }
 
 /* The floor fills the picture, seen from straight above; the sun is 60 degrees from it. */

@@ -29,7 +29,7 @@ static struct scene *pane_scene(bool blends)
 static void check_pane(bool blends)
 {
     const whit_renderer_params params = {.width = 201, .height = 201, .depth = 2};
-    struct image image = color_of(pane_scene(blends), NULL, &params);
+    own_image image = color_of(pane_scene(blends), NULL, &params);
     uint32_t clear = 0, dark = 0, changes = 0;
     for (uint32_t x = 0; x < image.width; ++x) {
         double at = ((x + 0.5) / image.width * 2.0 - 1.0) * eye_height * tan(view / 2.0);
@@ -54,7 +54,6 @@ static void check_pane(bool blends)
     }
     /* One half each, side by side. */
     assert_true(clear > 30 && dark > 30 && abs((int)clear - (int)dark) <= 2 && changes <= 1);
-    image_finish(&image);
 }
 
 TEST_BY_TURNS(textures_pattern_shadows, 0, 4)
@@ -114,12 +113,11 @@ TEST_BY_TURNS(bodies_absorb_along_the_way, 1, 4)
         const struct block *b = &blocks[i];
         const whit_renderer_params params = {
             .width = 1, .height = 1, .depth = 4, .camera = *b->camera};
-        struct image image = color_of(block_scene(b), NULL, &params);
+        own_image image = color_of(block_scene(b), NULL, &params);
         print_message("  %s\n", b->name);
         for (int c = 0; c < 3; ++c)
             assert_near(image.pixels[c], b->light * exp(-(double)sigma[c] * (b->length + b->seen)),
                         2.0 * half_a_step + 1e-5);
-        image_finish(&image);
     }
 }
 
@@ -130,7 +128,7 @@ TEST_BY_TURNS(knobs_make_shadows_opaque, 2, 4)
         params.all_effects = all;
         params.camera = (whit_camera)CAMERA_AT(0, 8, 0, 0, 0, 0, 0, 0, -1, 0.17);
         for (int blends = 0; blends < 2; ++blends) {
-            struct image image = color_of(pane_scene(blends), NULL, &params);
+            own_image image = color_of(pane_scene(blends), NULL, &params);
             uint32_t dark = 0;
             for (uint32_t x = 0; x < image.width; ++x) {
                 float value = image.pixels[4 * x];
@@ -138,7 +136,6 @@ TEST_BY_TURNS(knobs_make_shadows_opaque, 2, 4)
                 dark += value == 0.0f;
             }
             assert_true(dark > 50 && dark < 100);
-            image_finish(&image);
         }
     }
 }
@@ -184,18 +181,15 @@ static double ball_error(const struct image *a, const struct image *b)
    is wider. */
 TEST_BY_TURNS(coarse_balls_are_shaded_like_fine_ones, 3, 4)
 {
-    struct image fine = ball_picture(512, true);
+    own_image fine = ball_picture(512, true);
     static const uint32_t segments[] = {12, 20, 32};
     for (int i = 0; i < 3; ++i) {
-        struct image with = ball_picture(segments[i], false);
-        struct image without = ball_picture(segments[i], true);
+        own_image with = ball_picture(segments[i], false);
+        own_image without = ball_picture(segments[i], true);
         double error = ball_error(&with, &fine), before = ball_error(&without, &fine);
         print_message("  %2u segments: error %.5f, without %.5f\n", segments[i], error, before);
         assert_true(error < (i == 0 ? 0.75 : 0.4) * before);
-        image_finish(&with);
-        image_finish(&without);
     }
-    image_finish(&fine);
 }
 
 /* Without normals, and with those of the flat triangles. */
@@ -262,9 +256,8 @@ TEST_BY_TURNS(closed_rooms_stay_dark, 1, 4)
         for (size_t i = 0; i < sizeof lamps / sizeof *lamps; ++i)
             scene_put_lamp(scene, lamps[i][0], lamps[i][1], lamps[i][2], 5.0f);
         const whit_renderer_params params = {.width = 100, .height = 100};
-        struct image image = color_of(scene, NULL, &params);
+        own_image image = color_of(scene, NULL, &params);
         assert_true(red_sum(&image) == 0.0);
-        image_finish(&image);
     }
 }
 
@@ -300,7 +293,7 @@ TEST_BY_TURNS(catchers_show_shadows_alone, 2, 4)
         whit_renderer_params params = {.width = 201, .height = 1, .depth = 4};
         params.camera = (whit_camera)CAMERA_AT(0, 8, 0, 0, 0, 0, 0, 0, -1, 0.17);
         params.all_effects = all;
-        struct image image = color_of(catcher_scene(true), NULL, &params);
+        own_image image = color_of(catcher_scene(true), NULL, &params);
         uint32_t clear = 0, dark = 0, red = 0;
         for (uint32_t x = 0; x < image.width; ++x) {
             const float *p = &image.pixels[4 * x];
@@ -311,12 +304,10 @@ TEST_BY_TURNS(catchers_show_shadows_alone, 2, 4)
         }
         print_message("  clear %u, dark %u, red %u\n", clear, dark, red);
         assert_true(clear > 80 && dark > 30 && red > 30 && clear + dark + red >= 195);
-        image_finish(&image);
     }
     const whit_renderer_params params = {.width = 1, .height = 1, .depth = 4};
-    struct image dark = color_of(catcher_scene(false), NULL, &params);
+    own_image dark = color_of(catcher_scene(false), NULL, &params);
     assert_true(dark.pixels[0] == 0.5f);
-    image_finish(&dark);
 }
 
 /* ---- Traversals that are cut short ---- */
@@ -357,11 +348,10 @@ TEST_BY_TURNS(cut_walks_through_sheets_are_reported, 3, 4)
         if (device_get_limits(f.device)->loop_limited) {
             assert_int_equal(result, WHIT_ERROR_STATUS);
         } else {
-            struct image image = {0};
+            own_image image = {0};
             assert_int_equal(result, WHIT_OK);
             assert_int_equal(renderer_read_color(f.renderer, &image), WHIT_OK);
             assert_near(image.pixels[0], 0.5, 1e-6);
-            image_finish(&image);
         }
         fixture_close(&f);
     }
@@ -403,11 +393,10 @@ static uint32_t lit_pixels(double offset, uint32_t ulps)
     struct scene_mesh *mesh = &scene->meshes[scene->mesh_count - 1];
     mesh->materials[2] = mesh->materials[3] = index;
     scene_put_sun(scene, -0.6, 0.48, -0.64, 1.0f);
-    struct image image = color_of(scene, NULL, &params);
+    own_image image = color_of(scene, NULL, &params);
     uint32_t lit = 0;
     for (size_t i = 0; i < 33 * 33; ++i)
         lit += image.pixels[4 * i] > 0.0f;
-    image_finish(&image);
     return lit;
 }
 

@@ -127,8 +127,8 @@ TEST_BY_TURNS(balls_look_like_fine_triangles, 1, 2)
     static const char *const names[LOOK_COUNT] = {"texture", "mask", "bump", "glass"};
     for (int look = 0; look < LOOK_COUNT; ++look) {
         bool stretched = look != LOOK_TEXTURE;
-        struct image ball = color_of(ball_scene((enum look)look, false, stretched), NULL, &small);
-        struct image fine = color_of(ball_scene((enum look)look, true, stretched), NULL, &small);
+        own_image ball = color_of(ball_scene((enum look)look, false, stretched), NULL, &small);
+        own_image fine = color_of(ball_scene((enum look)look, true, stretched), NULL, &small);
         uint32_t far = 0, lit = 0, pixels = ball.width * ball.height;
         double mean = 0.0;
         for (uint32_t i = 0; i < pixels; ++i) {
@@ -145,8 +145,6 @@ TEST_BY_TURNS(balls_look_like_fine_triangles, 1, 2)
                       names[look], far, pixels, mean);
         assert_true(lit > pixels / 2);
         assert_in_range(far, 0, 8);
-        image_finish(&ball);
-        image_finish(&fine);
     }
 }
 
@@ -160,9 +158,8 @@ TEST_BY_TURNS(glass_filters_light_twice, 0, 2)
         if (balls) /* above the eye */
             add_object(scene, mesh_balls((double[]){0, 4, 0, 0.5}, 1), glass, 0, 0, 0);
         scene_put_sun(scene, 0, -1, 0, 1.0f);
-        struct image image = color_of(scene, NULL, &picture_params);
+        own_image image = color_of(scene, NULL, &picture_params);
         assert_near(middle(&image)[0], balls ? 0.25 : 1.0, 1e-6);
-        image_finish(&image);
     }
 }
 
@@ -186,12 +183,11 @@ static void look_at_leaf(int how, bool one_sided, bool all, float seen[3], float
     const whit_accel_params flat = {.instances = WHIT_INSTANCES_OFF};
     whit_renderer_params params = picture_params;
     params.all_effects = all;
-    struct image image = color_of(scene, how & ONE_SIDED_FLAT ? &flat : NULL, &params);
+    own_image image = color_of(scene, how & ONE_SIDED_FLAT ? &flat : NULL, &params);
     memcpy(seen, middle(&image), 3 * sizeof(float));
     /* 0.9 to the right on the floor, beside the leaf and in its shadow: tan(0.3) * 4 = 1.24 is the
        edge of the picture. */
     *shadow = image.pixels[4 * (16 * 33 + 16 + 12)];
-    image_finish(&image);
 }
 
 TEST_BY_TURNS(one_sided_leaves_are_not_seen_from_behind, 1, 2)
@@ -220,8 +216,7 @@ TEST(one_sided_balls_hide_their_inside)
         struct scene_material m = unlit(1, 0, 0);
         m.one_sided = true;
         add_object(scene, mesh_balls((double[]){0, 0, 0, 1}, 1), m, 0, 0, 0);
-        struct image image = color_of(scene, NULL, &picture_params);
+        own_image image = color_of(scene, NULL, &picture_params);
         assert_true(middle(&image)[0] == (inside ? 0.0f : 1.0f));
-        image_finish(&image);
     }
 }

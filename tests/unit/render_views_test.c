@@ -68,7 +68,7 @@ static void check_views(const struct fixture *f, const struct fixture *single,
                         const whit_camera *cameras, uint32_t count)
 {
     whit_renderer_params params = f->renderer->params;
-    struct image color, ids, distances;
+    own_image color = {0}, ids = {0}, distances = {0};
     assert_int_equal(renderer_render_views(f->renderer, cameras, count), WHIT_OK);
     assert_int_equal(renderer_read_color(f->renderer, &color), WHIT_OK);
     assert_int_equal(renderer_read_ids(f->renderer, &ids), WHIT_OK);
@@ -88,9 +88,6 @@ static void check_views(const struct fixture *f, const struct fixture *single,
         check_distances(f, &cameras[i], &own_distances);
         picture_finish(&picture);
     }
-    image_finish(&color);
-    image_finish(&ids);
-    image_finish(&distances);
 }
 
 /* The buffers hold only 24 rows, so that pictures are drawn in bands that end within views. */
