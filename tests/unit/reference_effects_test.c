@@ -199,9 +199,9 @@ TEST(every_effect_agrees_with_the_device)
                                       .whole_stops = true};
     struct fixture f = fixture_open(all_effects(), NULL, &params.picture);
     own_image device = render(&f);
-    struct picture whole = reference_picture(f.accel, &params);
+    own_picture whole = reference_picture(f.accel, &params);
     params.whole_stops = false;
-    struct picture ideal = reference_picture(f.accel, &params);
+    own_picture ideal = reference_picture(f.accel, &params);
     struct difference d = compare(&device, &whole.color),
                       stops = compare(&whole.color, &ideal.color);
     print_message("  %u of %u pixels over 1e-3, largest %.2g; for whole stops %u, largest %.2g\n",
@@ -211,8 +211,6 @@ TEST(every_effect_agrees_with_the_device)
        way. The change must be larger than the device's error, else it would not show whether the
        reference rounds. */
     assert_true(stops.largest > d.largest && stops.largest < 4 * 0.006);
-    picture_finish(&whole);
-    picture_finish(&ideal);
     fixture_close(&f);
 }
 
@@ -242,10 +240,9 @@ TEST(touching_smooth_bodies_agree)
                                       .whole_stops = true};
     struct fixture f = fixture_open(touching_smooth_bodies(), NULL, &params.picture);
     own_image device = render(&f);
-    struct picture reference = reference_picture(f.accel, &params);
+    own_picture reference = reference_picture(f.accel, &params);
     struct difference d = compare(&device, &reference.color);
     print_message("  %u of %u pixels over 1e-3, largest %.2g\n", d.over, SIDE * SIDE, d.largest);
     assert_true(d.over * 500 <= SIDE * SIDE);
-    picture_finish(&reference);
     fixture_close(&f);
 }

@@ -302,9 +302,8 @@ TEST(threads_draw_the_same_bytes)
     own_image first = draw(&d);
     for (uint32_t threads = 1; threads < 4; ++threads) {
         const struct reference_params params = {.picture = picture, .thread_count = threads};
-        struct picture other = reference_picture(d.accel, &params);
+        own_picture other = reference_picture(d.accel, &params);
         assert_same_image("threads", &other.color, &first);
-        picture_finish(&other);
     }
     close_reference(&d);
 }
@@ -411,14 +410,13 @@ TEST(trees_do_not_matter)
         struct accel *other = NULL;
         uint32_t over = 0;
         assert_int_equal(accel_create(&fixture_log, d.scene, &trees[i], &other), WHIT_OK);
-        struct picture picture = reference_picture(other, &params);
+        own_picture picture = reference_picture(other, &params);
         for (size_t k = 0; k < 4 * 24 * 24; ++k)
             over += fabs((double)picture.color.pixels[k] - (double)first.pixels[k]) > 1e-4;
         if (trees[i].instances == WHIT_INSTANCES_OFF)
             assert_true(over <= 4 * 3);
         else
             assert_same_image("other trees", &picture.color, &first);
-        picture_finish(&picture);
         accel_destroy(other);
     }
     close_reference(&d);

@@ -105,12 +105,11 @@ static void check(const char *what, const whit_accel_params *trees, void (*chang
         change(scene);
     struct fixture f = fixture_open(scene, trees, &params.picture);
     own_image device = render(&f);
-    struct picture reference = reference_picture(f.accel, &params);
+    own_picture reference = reference_picture(f.accel, &params);
     double over = share_over(&device, &reference.color, 1e-3);
     print_message("  %s: %.2f %% of pixels over 1e-3, RMSE %.2g\n", what, 100.0 * over,
                   rmse(&device, &reference.color));
     assert_true(over <= 0.002); /* for edges */
-    picture_finish(&reference);
     fixture_close(&f);
 }
 

@@ -99,7 +99,7 @@ static struct difference compare_scene(struct scene *scene, const char *name)
     const struct reference_params params = {
         .picture = {.width = WIDTH, .height = HEIGHT, .depth = 6}, .whole_stops = true};
     struct fixture f = fixture_open(scene, &(whit_accel_params){0}, &params.picture);
-    struct picture device = render_picture(&f), reference = reference_picture(f.accel, &params);
+    own_picture device = render_picture(&f), reference = reference_picture(f.accel, &params);
     struct moved moved = move_camera(f.accel, &params);
     struct difference d = compare(&moved, &device, &reference);
     print_message("  %-20s %2u of %u pixels over 1e-3, %u of them at edges; %u other ids; largest "
@@ -108,8 +108,6 @@ static struct difference compare_scene(struct scene *scene, const char *name)
                   reference.stats.render_ms);
     for (int i = 0; i < MOVES; ++i)
         reference_destroy(moved.all[i]);
-    picture_finish(&device);
-    picture_finish(&reference);
     fixture_close(&f);
     return d;
 }

@@ -77,7 +77,7 @@ static void expect(const struct picture plain[3], float contrast, struct expecte
 
 static void check(struct fixture *f, const struct picture *first, const struct expected *e)
 {
-    struct picture p = render_picture(f);
+    own_picture p = render_picture(f);
     assert_memory_equal(p.color.pixels, e->pixels, sizeof e->pixels);
     assert_same_image("ids", &p.ids, &first->ids);
     assert_memory_equal(p.stats.pixels_by_samples, e->by_samples, sizeof e->by_samples);
@@ -85,7 +85,6 @@ static void check(struct fixture *f, const struct picture *first, const struct e
     check_between(e->min.rays_shadow, p.stats.rays_shadow, e->max.rays_shadow);
     check_between(e->min.rays_reflected, p.stats.rays_reflected, e->max.rays_reflected);
     check_between(e->min.rays_refracted, p.stats.rays_refracted, e->max.rays_refracted);
-    picture_finish(&p);
 }
 
 /* Draws pictures of 4, 16 and 64 samples, and compares them with adaptive ones in tiles and bands

@@ -117,10 +117,9 @@ static void check_any_order(const char *name, struct scene *scene, const double 
         assert_true(pixels_unlike(&anew[i].color, &anew[i + 1].color) > 0);
     for (int i = 0; i < STEPS; ++i) {
         assert_int_equal(renderer_set_time(f.renderer, times_s[order[i]]), WHIT_OK);
-        struct picture picture = render_picture(&f);
+        own_picture picture = render_picture(&f);
         print_message("  %s at %g s, step %d\n", name, times_s[order[i]], i);
         assert_same_picture(name, &picture, &anew[order[i]]);
-        picture_finish(&picture);
     }
     for (int i = 0; i < TIMES; ++i)
         picture_finish(&anew[i]);
@@ -195,14 +194,12 @@ TEST_BY_TURNS(a_flattened_scene_looks_the_same, 1, 2)
     static const double times_s[] = {0.0, 0.9, 2.0};
     struct fixture f = fixture_open(everything_moves(), NULL, &animate_params);
     for (int i = 0; i < 3; ++i) {
-        struct picture instanced = take_anew(&f, WHIT_INSTANCES_ON, times_s[i]);
-        struct picture flat = take_anew(&f, WHIT_INSTANCES_OFF, times_s[i]);
+        own_picture instanced = take_anew(&f, WHIT_INSTANCES_ON, times_s[i]);
+        own_picture flat = take_anew(&f, WHIT_INSTANCES_OFF, times_s[i]);
         double off = difference(&instanced.color, &flat.color);
         print_message("  at %g s: differs by %.2g\n", times_s[i], off);
         assert_true(off < 1e-4);
         assert_same_image("identities", &instanced.ids, &flat.ids);
-        picture_finish(&instanced);
-        picture_finish(&flat);
     }
     fixture_close(&f);
 }

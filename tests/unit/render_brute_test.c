@@ -158,8 +158,8 @@ TEST(max_are_drawn_and_more_are_refused)
 static void check_picture(struct scene *scene, struct scene *again,
                           const whit_renderer_params *params)
 {
-    struct picture with = picture_of(scene, NULL, params);
-    struct picture without = picture_of(again, &no_trees, params);
+    own_picture with = picture_of(scene, NULL, params);
+    own_picture without = picture_of(again, &no_trees, params);
     assert_same_picture("without trees", &with, &without);
     print_message("  %llu shadow, %llu reflected, %llu refracted rays; %u dispatches\n",
                   (unsigned long long)without.stats.rays_shadow,
@@ -169,8 +169,6 @@ static void check_picture(struct scene *scene, struct scene *again,
         const whit_cost *a = &with.stats.costs[k], *b = &without.stats.costs[k];
         assert_true(a->rays == b->rays && a->triangles < b->triangles);
     }
-    picture_finish(&with);
-    picture_finish(&without);
 }
 
 /* The scenes have two lights, four instances, mirror and glass; cut-outs, blending and thin glass;
@@ -227,9 +225,8 @@ TEST(empty_scenes_have_a_picture)
     struct gpu_hit hit;
     assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit, NULL), WHIT_OK);
     assert_int_equal(hit.primitive, HIT_NONE);
-    struct picture picture = render_picture(&f);
+    own_picture picture = render_picture(&f);
     for (uint32_t i = 0; i < 2 * picture.ids.width * picture.ids.height; ++i)
         assert_int_equal(picture.ids.words[i], HIT_NONE);
-    picture_finish(&picture);
     fixture_close(&f);
 }

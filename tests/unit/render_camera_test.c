@@ -341,7 +341,7 @@ TEST(sizes_may_be_odd)
         params.width = sizes[i][0];
         params.height = sizes[i][1];
         fixture_renew(&f, &params);
-        struct picture picture = render_picture(&f);
+        own_picture picture = render_picture(&f);
         assert_finite(&picture.color);
         uint32_t bad = 0, hits = 0, status = 0;
         struct gpu_chunk sample;
@@ -358,7 +358,6 @@ TEST(sizes_may_be_odd)
         }
         assert_int_equal(bad, 0);
         assert_true(hits > 0);
-        picture_finish(&picture);
     }
     fixture_close(&f);
 }

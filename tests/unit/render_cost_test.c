@@ -316,10 +316,9 @@ TEST(pictures_cost_the_same)
         check_sums(&counted);
         params.count = false;
         fixture_renew(&f, &params);
-        struct picture plain = render_picture(&f);
+        own_picture plain = render_picture(&f);
         assert_same_picture("counting", &counted.picture, &plain);
         counted_finish(&counted);
-        picture_finish(&plain);
         fixture_close(&f);
     }
 }

@@ -57,15 +57,13 @@ static void check_picture(const char *name, struct scene *scene, whit_camera cam
     whit_renderer_params counted = exact_params(true), deferred = exact_params(false);
     counted.camera = deferred.camera = camera;
     struct fixture f = fixture_open(scene, NULL, &counted);
-    struct picture in_place = render_picture(&f);
+    own_picture in_place = render_picture(&f);
     fixture_renew(&f, &deferred);
-    struct picture later = render_picture(&f);
+    own_picture later = render_picture(&f);
     print_message("  %s: %u deferred\n", name, later.stats.deferred);
     assert_int_equal(in_place.stats.deferred, 0);
     assert_true(later.stats.deferred >= deferred_min);
     assert_same_picture(name, &in_place, &later);
-    picture_finish(&in_place);
-    picture_finish(&later);
     fixture_close(&f);
 }
 

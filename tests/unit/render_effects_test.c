@@ -166,12 +166,10 @@ static whit_stats assert_auto_is_all(struct scene *(*make)(void))
 {
     whit_renderer_params all = small;
     all.all_effects = true;
-    struct picture a = picture_of(make(), NULL, &small), b = picture_of(make(), NULL, &all);
+    own_picture a = picture_of(make(), NULL, &small), b = picture_of(make(), NULL, &all);
     assert_same_picture("with every effect", &a, &b);
     print_message("  %u of %u instructions\n", a.stats.kernel_instructions,
                   b.stats.kernel_instructions);
-    picture_finish(&a);
-    picture_finish(&b);
     return a.stats;
 }
 
@@ -235,14 +233,12 @@ TEST(the_driver_draws_the_same)
 {
     if (!getenv("WHIT_TEST_WHOLE_KERNELS"))
         skip();
-    struct picture a = picture_of(rich_scene(), NULL, &small);
+    own_picture a = picture_of(rich_scene(), NULL, &small);
     assert_int_equal(setenv("WHIT_NO_SPECIALIZE", "1", 1), 0);
-    struct picture b = picture_of(rich_scene(), NULL, &small);
+    own_picture b = picture_of(rich_scene(), NULL, &small);
     assert_int_equal(unsetenv("WHIT_NO_SPECIALIZE"), 0);
     assert_same_picture("whole kernels", &a, &b);
     assert_int_not_equal(a.stats.kernel_instructions, b.stats.kernel_instructions);
-    picture_finish(&a);
-    picture_finish(&b);
 }
 
 /* The only effect that is added to the plain scene. */
@@ -340,12 +336,11 @@ TEST_BY_TURNS(effects_left_out_are_gone, 0, 2)
         params.all_effects = kernels[i].all;
         for (int k = 0; k < 3; ++k)
             params.effects_removed |= kernels[i].without[k] ? bit(effects[k]) : 0;
-        struct picture picture = picture_of(glass_scene(), NULL, &params);
+        own_picture picture = picture_of(glass_scene(), NULL, &params);
         const uint64_t rays[] = {picture.stats.rays_shadow, picture.stats.rays_reflected,
                                  picture.stats.rays_refracted};
         for (int k = 0; k < 3; ++k)
             assert_true((rays[k] == 0) == kernels[i].without[k]);
-        picture_finish(&picture);
     }
 }
 
@@ -393,13 +388,11 @@ TEST(glass_that_refracts_nothing_is_a_body_of_its_colour)
     for (size_t model = 0; model < 2; ++model) {
         if (!cases_turn(model, 2))
             continue;
-        struct picture body = glass_or_body(false, model, WHIT_CLASSES_ONE, false);
+        own_picture body = glass_or_body(false, model, WHIT_CLASSES_ONE, false);
         for (size_t i = 0; i < sizeof kernels / sizeof *kernels; ++i) {
-            struct picture glass = glass_or_body(true, model, kernels[i].classes, kernels[i].all);
+            own_picture glass = glass_or_body(true, model, kernels[i].classes, kernels[i].all);
             assert_same_picture("glass", &glass, &body);
-            picture_finish(&glass);
         }
-        picture_finish(&body);
     }
 }
 
@@ -408,21 +401,19 @@ TEST_BY_TURNS(effects_added_do_not_matter, 1, 2)
     static const enum scene_effect added[] = {SCENE_EFFECT_ABSORPTION,  SCENE_EFFECT_CUTOUTS,
                                               SCENE_EFFECT_NORMAL_MAPS, SCENE_EFFECT_AREA_LIGHTS,
                                               SCENE_EFFECT_CULLING,     SCENE_EFFECT_SPHERES};
-    struct picture plain = picture_of(plain_scene(), NULL, &small);
+    own_picture plain = picture_of(plain_scene(), NULL, &small);
     for (size_t i = 0; i < sizeof added / sizeof *added; ++i) {
         whit_renderer_params more = small;
         if (!cases_turn(i, 3))
             continue;
         more.effects_added = bit(added[i]);
-        struct picture picture = picture_of(plain_scene(), NULL, &more);
+        own_picture picture = picture_of(plain_scene(), NULL, &more);
         print_message("  with %-16s %+6d instructions\n", scene_effect_name(added[i]),
                       (int)picture.stats.kernel_instructions -
                           (int)plain.stats.kernel_instructions);
         assert_same_picture(scene_effect_name(added[i]), &plain, &picture);
         assert_true(picture.stats.kernel_instructions > plain.stats.kernel_instructions);
-        picture_finish(&picture);
     }
-    picture_finish(&plain);
 }
 
 /* ---- Kernels ---- */
@@ -582,18 +573,15 @@ TEST_BY_TURNS(what_comes_into_view_is_right_at_once, 1, 2)
 {
     whit_renderer_params later = small;
     later.time_s = 1.0;
-    struct picture expected = picture_of(rising_glass_scene(), NULL, &later);
+    own_picture expected = picture_of(rising_glass_scene(), NULL, &later);
     assert_true(expected.stats.rays_refracted > 0);
     struct fixture f = fixture_open(rising_glass_scene(), NULL, &small);
-    struct picture before = render_picture(&f);
+    own_picture before = render_picture(&f);
     assert_int_equal(before.stats.rays_refracted, 0);
     const struct pipeline *pipeline = f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline;
     assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
-    struct picture after = render_picture(&f);
+    own_picture after = render_picture(&f);
     assert_same_picture("risen glass", &after, &expected);
     assert_ptr_equal(f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline, pipeline);
-    picture_finish(&before);
-    picture_finish(&after);
-    picture_finish(&expected);
     fixture_close(&f);
 }

@@ -18,7 +18,7 @@ static void check_furnace(const char *name, struct scene *scene)
 {
     const whit_renderer_params params = {.width = 32, .height = 32, .depth = 5};
     struct fixture f = fixture_open(scene, NULL, &params);
-    struct picture picture = render_picture(&f);
+    own_picture picture = render_picture(&f);
     const whit_stats *stats = &picture.stats;
     double highest = 0, worst = 0, cut = 0;
     for (size_t i = 0; i < 32 * 32; ++i) {
@@ -35,7 +35,6 @@ static void check_furnace(const char *name, struct scene *scene)
     assert_true(highest <= 1 + 1e-4 && worst <= 1e-4); /* NUMERICS O13 */
     assert_true(fabs(stats->weight_cut_depth - cut) < 1e-6 && stats->weight_cut_bailout == 0);
     assert_true(stats->rays_cut_bailout == 0 && (stats->rays_cut_depth > 0) == (cut > 0));
-    picture_finish(&picture);
     fixture_close(&f);
 }
 
@@ -132,11 +131,10 @@ TEST(highlights_that_nobody_sees_take_no_shadow_rays)
         scene_put_lamp(scene, 0, 4, 0.001, 1);
         const whit_renderer_params params = {
             .width = 64, .height = 64, .bailout = i ? 0.0 : WHIT_BAILOUT_DEFAULT};
-        struct picture picture = picture_of(scene, NULL, &params);
+        own_picture picture = picture_of(scene, NULL, &params);
         rays[i] = picture.stats.rays_shadow;
         images[i] = picture.color;
         picture.color = (struct image){0};
-        picture_finish(&picture);
     }
     double worst = largest_difference(&images[0], &images[1]);
     print_message("  %llu shadow rays of %llu, off by %.3g\n", (unsigned long long)rays[0],
@@ -161,7 +159,7 @@ TEST(bailout_keeps_its_bound)
                                                  .bailout = bailouts[i],
                                                  .camera = which ? (whit_camera){.name = NULL}
                                                                  : glass_camera};
-            struct picture picture = picture_of(weak_scene(which), NULL, &params);
+            own_picture picture = picture_of(weak_scene(which), NULL, &params);
             const whit_stats *stats = &picture.stats;
             if (i == 0) {
                 assert_true(stats->rays_cut_bailout == 0 && stats->bailout_bound == 0);
@@ -176,7 +174,6 @@ TEST(bailout_keeps_its_bound)
                 assert_true(worst <= stats->bailout_bound + 1e-6);
                 assert_true(stats->bailout_bound < 100 * worst);
             }
-            picture_finish(&picture);
         }
     }
 }

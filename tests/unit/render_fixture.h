@@ -137,6 +137,9 @@ static inline void picture_finish(struct picture *picture)
     image_finish(&picture->ids);
 }
 
+/* Freed at the end of its block. */
+#define own_picture __attribute__((cleanup(picture_finish))) struct picture
+
 /* The picture of a scene, which it destroys. */
 static inline struct image color_of(struct scene *scene, const whit_accel_params *accel,
                                     const whit_renderer_params *params)

@@ -182,10 +182,8 @@ TEST(trees_do_not_matter)
     params.width = 24;
     params.height = 16;
     params.numerics = NUMERICS_EXACT;
-    struct picture with = picture_of(glass_scene(), NULL, &params);
-    struct picture without = picture_of(glass_scene(), &none, &params);
+    own_picture with = picture_of(glass_scene(), NULL, &params);
+    own_picture without = picture_of(glass_scene(), &none, &params);
     assert_true(with.stats.deferred > 0 && without.stats.deferred > 0);
     assert_same_picture("without trees", &with, &without);
-    picture_finish(&with);
-    picture_finish(&without);
 }

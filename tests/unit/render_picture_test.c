@@ -128,15 +128,13 @@ TEST(tiles_do_not_matter)
 {
     whit_renderer_params params = {
         .width = 75, .height = 51, .depth = 6, .sampling.count = 4, .tile_size = 16};
-    struct picture small = picture_of(mixed_scene(), NULL, &params);
+    own_picture small = picture_of(mixed_scene(), NULL, &params);
     assert_true(small.stats.tiles > 1);
     for (uint32_t tile = 32; tile <= 512; tile *= 4) {
         params.tile_size = tile;
-        struct picture large = picture_of(mixed_scene(), NULL, &params);
+        own_picture large = picture_of(mixed_scene(), NULL, &params);
         assert_same_picture("larger tiles", &large, &small);
-        picture_finish(&large);
     }
-    picture_finish(&small);
 }
 
 static struct scene *panes_scene(int count)
@@ -237,9 +235,8 @@ static struct scene *lamps_scene(int lamps)
 TEST_BY_TURNS(many_lights_are_drawn, 1, 4)
 {
     const whit_renderer_params params = {.width = 8, .height = 8, .depth = 0};
-    struct picture picture = picture_of(lamps_scene(4000), NULL, &params);
+    own_picture picture = picture_of(lamps_scene(4000), NULL, &params);
     assert_true(picture.stats.rays_shadow > 4000);
-    picture_finish(&picture);
 }
 
 /* In a single tile a cancellation during the first submission waits for a few lights, but not for
@@ -303,7 +300,7 @@ static void check_shares(const whit_accel_params *accel)
                                          .classes = WHIT_CLASSES_MANY,
                                          .time_stages = true};
     struct fixture f = fixture_open(mixed_scene(), accel, &params);
-    struct picture picture = render_picture(&f);
+    own_picture picture = render_picture(&f);
     const whit_stats *stats = &picture.stats;
     uint32_t worn[2][8] = {{0}}, all[2] = {0}, known = 0;
     assert_int_equal(stats->tiles, 2);
@@ -327,7 +324,6 @@ static void check_shares(const whit_accel_params *accel)
     }
     assert_int_equal(known, all[0] + all[1]); /* none is left out */
     assert_true(stats->share_count == 3);
-    picture_finish(&picture);
     fixture_close(&f);
 }
 
@@ -356,9 +352,8 @@ TEST(tiles_grow_into_the_room_there_is)
 TEST(a_small_picture_is_one_tile)
 {
     whit_renderer_params params = {.width = 160, .height = 90};
-    struct picture picture = picture_of(mixed_scene(), NULL, &params);
+    own_picture picture = picture_of(mixed_scene(), NULL, &params);
     assert_int_equal(picture.stats.tiles, 1);
-    picture_finish(&picture);
 }
 
 TEST(a_picture_begins_with_the_tile_that_the_last_one_came_to)
@@ -381,12 +376,11 @@ TEST(stages_are_timed_only_where_asked)
     whit_renderer_params params = {.width = 64, .height = 32, .tile_size = 32};
     for (int timed = 0; timed < 2; ++timed) {
         params.time_stages = timed == 1;
-        struct picture picture = picture_of(mixed_scene(), NULL, &params);
+        own_picture picture = picture_of(mixed_scene(), NULL, &params);
         const whit_stage *camera = &picture.stats.stages[RENDER_STAGE_CAMERA];
         assert_int_equal(camera->rays, 64 * 32);
         assert_int_equal(camera->ms > 0.0, timed == 1);
         assert_int_equal(picture.stats.share_count > 0, timed == 1);
-        picture_finish(&picture);
     }
 }
 
@@ -400,7 +394,7 @@ static void check_colors_alone(whit_sampling sampling)
                                    .depth = 2,
                                    .bailout = 0.05,
                                    .sampling = sampling};
-    struct picture all = picture_of(mixed_scene(), NULL, &params);
+    own_picture all = picture_of(mixed_scene(), NULL, &params);
     params.color_only = true;
     struct fixture f = fixture_open(mixed_scene(), NULL, &params);
     struct image color = render(&f), borrowed, none;
@@ -422,7 +416,6 @@ static void check_colors_alone(whit_sampling sampling)
     assert_int_equal(renderer_read_cuts(f.renderer, &none), WHIT_ERROR_USAGE);
     image_finish(&color);
     fixture_close(&f);
-    picture_finish(&all);
 }
 
 TEST(colors_alone_are_the_same)
@@ -436,7 +429,7 @@ TEST(weights_of_cut_rays_are_those_of_their_pixels)
 {
     const whit_renderer_params params = {.width = 64, .height = 48, .bailout = 0.05};
     struct fixture f = fixture_open(mixed_scene(), NULL, &params);
-    struct picture picture = render_picture(&f);
+    own_picture picture = render_picture(&f);
     own_image cuts = {0};
     size_t missed = 0, cut = 0;
     assert_int_equal(renderer_read_cuts(f.renderer, &cuts), WHIT_OK);
@@ -448,7 +441,6 @@ TEST(weights_of_cut_rays_are_those_of_their_pixels)
         cut += has;
     }
     assert_true(missed > 0 && cut > 0);
-    picture_finish(&picture);
     fixture_close(&f);
 }
 
@@ -458,9 +450,9 @@ TEST(shares_are_the_same_by_one_segment_and_by_two)
 {
     whit_renderer_params params = {
         .width = 64, .height = 32, .tile_size = 32, .depth = 4, .segments = 1, .time_stages = true};
-    struct picture one = picture_of(mixed_scene(), NULL, &params);
+    own_picture one = picture_of(mixed_scene(), NULL, &params);
     params.segments = 2;
-    struct picture two = picture_of(mixed_scene(), NULL, &params);
+    own_picture two = picture_of(mixed_scene(), NULL, &params);
     assert_same_picture("two segments", &one, &two);
     assert_true(one.stats.rays_refracted > 0 && one.stats.share_count > 1);
     assert_int_equal(one.stats.share_count, two.stats.share_count);
@@ -470,8 +462,6 @@ TEST(shares_are_the_same_by_one_segment_and_by_two)
         assert_int_equal(a->material, b->material);
         assert_true(a->share == b->share);
     }
-    picture_finish(&one);
-    picture_finish(&two);
 }
 
 /* Each of these rays calls for two others. */

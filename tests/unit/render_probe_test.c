@@ -165,7 +165,7 @@ static struct probe_report probe(const struct fixture *f, uint32_t x, uint32_t y
 static struct sums probe_picture(struct fixture *f)
 {
     struct sums sums = {0};
-    struct picture before = render_picture(f);
+    own_picture before = render_picture(f);
     const whit_stats *stats = &before.stats;
     uint32_t width = before.color.width, pixels = width * before.color.height;
     for (uint32_t i = 0; i < pixels; ++i) {
@@ -201,7 +201,6 @@ static struct sums probe_picture(struct fixture *f)
                   (unsigned long long)sums.cut_depth, (unsigned long long)sums.cut_bailout,
                   (unsigned long long)sums.passed, (unsigned long long)sums.exact_equal,
                   (unsigned long long)sums.exact);
-    picture_finish(&before);
     return sums;
 }
 

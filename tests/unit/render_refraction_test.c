@@ -144,7 +144,7 @@ static void leave_mirrors(double turn)
         memcpy(scene->nodes[scene->node_count - 1].rotation, q, sizeof q);
     }
     const whit_renderer_params params = {.width = 1, .height = 1, .depth = 255};
-    struct picture picture = picture_of(scene, NULL, &params);
+    own_picture picture = picture_of(scene, NULL, &params);
     const float *color = picture.color.pixels;
     double off = (double)color[0] / (double)color[2] - out[1] / way;
     print_message("  %u reflections, mirrors turned by %g: up is off by %.2g, the weight by %.2g\n",
@@ -153,7 +153,6 @@ static void leave_mirrors(double turn)
     assert_int_equal(picture.stats.rays_cut_depth, 0);
     assert_true(fabs(off) <= 1e-6); /* NUMERICS O6 */
     assert_true(color[2] == 1.0f);
-    picture_finish(&picture);
 }
 
 TEST(directions_stay_unit)

@@ -34,16 +34,14 @@ static void check_same(const struct fixture *f, const char *name,
     struct fixture fresh = {.device = f->device, .accel = f->accel};
     whit_renderer_params own = *params;
     own.packets = WHIT_PACKETS_OFF; /* else it would depend on the size that it was made with */
-    struct picture picture = render_picture(f);
+    own_picture picture = render_picture(f);
     fixture_renew(&fresh, &own);
-    struct picture expected = render_picture(&fresh);
+    own_picture expected = render_picture(&fresh);
     assert_int_equal(picture.color.width, params->width);
     assert_int_equal(picture.color.height, params->height);
     assert_same_picture(name, &picture, &expected);
     assert_int_equal(picture.stats.device_bytes, expected.stats.device_bytes);
     renderer_destroy(fresh.renderer);
-    picture_finish(&picture);
-    picture_finish(&expected);
 }
 
 static void walk(const char *name, const whit_accel_params *accel, int count)
@@ -118,12 +116,10 @@ TEST(a_larger_view_keeps_the_kernels)
     struct fixture f = fixture_open(file_scene("whitted"), NULL, &small);
     assert_true(f.renderer->few_kernels && render_few_kernels(&small));
     assert_false(render_few_kernels(&large));
-    struct picture before = render_picture(&f);
+    own_picture before = render_picture(&f);
     assert_int_equal(renderer_set_view(f.renderer, &large), WHIT_OK);
-    struct picture after = render_picture(&f);
+    own_picture after = render_picture(&f);
     assert_true(f.renderer->few_kernels);
     assert_int_equal(after.stats.kernel_instructions, before.stats.kernel_instructions);
-    picture_finish(&before);
-    picture_finish(&after);
     fixture_close(&f);
 }

@@ -204,7 +204,7 @@ static void check_steps(uint32_t spacing, uint32_t samples, uint32_t ray_capacit
                                    .light_samples = 4,
                                    .sampling.count = samples};
     assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
-    struct picture all = render_picture(&f);
+    own_picture all = render_picture(&f);
     f.renderer->params.step = look_at_step;
     f.renderer->params.progress_user = &all;
     params.step_spacing = spacing;
@@ -216,15 +216,13 @@ static void check_steps(uint32_t spacing, uint32_t samples, uint32_t ray_capacit
     const struct pixel_buffers *p = &f.renderer->picture.buffers;
     assert_int_equal(buffer_write(p->pixels, 0, parts, sizeof *parts), WHIT_OK);
     assert_int_equal(buffer_write(p->ids, 0, parts, sizeof *parts / 2), WHIT_OK);
-    struct picture stepped = render_picture(&f);
+    own_picture stepped = render_picture(&f);
     assert_int_equal(steps_wrong, 0);
     assert_int_equal(steps, 3);
     assert_memory_equal(stepped.color.pixels, all.color.pixels, FLOATS * sizeof(float));
     assert_memory_equal(stepped.ids.words, all.ids.words, WIDTH * HEIGHT * 2 * sizeof(uint32_t));
     assert_int_equal(all_rays(&stepped.stats), all_rays(&all.stats));
     f.renderer->params.step = NULL;
-    picture_finish(&stepped);
-    picture_finish(&all);
 }
 
 TEST(steps_draw_each_pixel_once)

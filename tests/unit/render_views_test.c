@@ -77,7 +77,7 @@ static void check_views(const struct fixture *f, const struct fixture *single,
     for (uint32_t i = 0; i < count; ++i) {
         params.camera = cameras[i];
         assert_int_equal(renderer_set_view(single->renderer, &params), WHIT_OK);
-        struct picture picture = render_picture(single);
+        own_picture picture = render_picture(single);
         struct image own_color = view_of(&color, i, params.height),
                      own_ids = view_of(&ids, i, params.height),
                      own_distances = view_of(&distances, i, params.height);
@@ -86,7 +86,6 @@ static void check_views(const struct fixture *f, const struct fixture *single,
         assert_same_image(what, &own_color, &picture.color);
         assert_same_image(what, &own_ids, &picture.ids);
         check_distances(f, &cameras[i], &own_distances);
-        picture_finish(&picture);
     }
 }
 
@@ -203,13 +202,13 @@ TEST_BY_TURNS(pictures_of_one_camera_in_between, 1, 2)
     single.renderer = NULL;
     fixture_renew(&single, &small);
     place_cameras(cameras, MANY, true);
-    struct picture before = render_picture(&f);
+    own_picture before = render_picture(&f);
     check_views(&f, &single, cameras, 4);
     cameras[6] = (whit_camera)CAMERA_AT(1, 1, 1, 1, 1, 1, 0, 1, 0, 40);
     assert_int_equal(renderer_render_views(f.renderer, cameras, MANY), WHIT_ERROR_USAGE);
     check_views(&f, &single, cameras, 6);
     check_views(&f, &single, cameras, 1);
-    struct picture after = render_picture(&f);
+    own_picture after = render_picture(&f);
     assert_same_picture("one camera", &before, &after);
     struct image distances;
     assert_int_equal(renderer_read_distances(f.renderer, &distances), WHIT_ERROR_USAGE);
@@ -217,8 +216,6 @@ TEST_BY_TURNS(pictures_of_one_camera_in_between, 1, 2)
     assert_int_equal(renderer_set_time(single.renderer, 0.3), WHIT_OK);
     check_views(&f, &single, cameras, 3);
     renderer_destroy(single.renderer);
-    picture_finish(&before);
-    picture_finish(&after);
     fixture_close(&f);
 }
 
