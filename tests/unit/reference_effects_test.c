@@ -197,7 +197,7 @@ TEST(every_effect_agrees_with_the_device)
                                                   .schlick = true,
                                                   .light_samples = 4},
                                       .whole_stops = true};
-    struct fixture f = fixture_open(all_effects(), NULL, &params.picture);
+    own_fixture f = fixture_open(all_effects(), NULL, &params.picture);
     own_image device = render(&f);
     own_picture whole = reference_picture(f.accel, &params);
     params.whole_stops = false;
@@ -211,7 +211,6 @@ TEST(every_effect_agrees_with_the_device)
        way. The change must be larger than the device's error, else it would not show whether the
        reference rounds. */
     assert_true(stops.largest > d.largest && stops.largest < 4 * 0.006);
-    fixture_close(&f);
 }
 
 /* Two smooth bodies of one shape that touch everywhere. The inner one has the higher priority and
@@ -238,11 +237,10 @@ TEST(touching_smooth_bodies_agree)
 {
     struct reference_params params = {.picture = {.width = SIDE, .height = SIDE, .depth = 3},
                                       .whole_stops = true};
-    struct fixture f = fixture_open(touching_smooth_bodies(), NULL, &params.picture);
+    own_fixture f = fixture_open(touching_smooth_bodies(), NULL, &params.picture);
     own_image device = render(&f);
     own_picture reference = reference_picture(f.accel, &params);
     struct difference d = compare(&device, &reference.color);
     print_message("  %u of %u pixels over 1e-3, largest %.2g\n", d.over, SIDE * SIDE, d.largest);
     assert_true(d.over * 500 <= SIDE * SIDE);
-    fixture_close(&f);
 }

@@ -103,14 +103,13 @@ static void check(const char *what, const whit_accel_params *trees, void (*chang
     struct scene *scene = far_textures();
     if (change)
         change(scene);
-    struct fixture f = fixture_open(scene, trees, &params.picture);
+    own_fixture f = fixture_open(scene, trees, &params.picture);
     own_image device = render(&f);
     own_picture reference = reference_picture(f.accel, &params);
     double over = share_over(&device, &reference.color, 1e-3);
     print_message("  %s: %.2f %% of pixels over 1e-3, RMSE %.2g\n", what, 100.0 * over,
                   rmse(&device, &reference.color));
     assert_true(over <= 0.002); /* for edges */
-    fixture_close(&f);
 }
 
 static void make_orthographic(struct scene *scene)
@@ -181,7 +180,7 @@ static struct image picture_by(struct fixture *f, whit_minification minification
 
 TEST_BY_TURNS(one_sample_is_nearer_to_the_truth, 0, 2)
 {
-    struct fixture f = fixture_open(checkers(1), NULL, NULL);
+    own_fixture f = fixture_open(checkers(1), NULL, NULL);
     own_image truth = picture_by(&f, WHIT_MINIFICATION_NONE, 0, 256);
     own_image plain = picture_by(&f, WHIT_MINIFICATION_NONE, 0, 1);
     own_image smooth = picture_by(&f, WHIT_MINIFICATION_MIPMAP, 0, 1);
@@ -193,12 +192,11 @@ TEST_BY_TURNS(one_sample_is_nearer_to_the_truth, 0, 2)
                   before, after, left, last);
     assert_true(after < 0.8 * before);
     assert_true(last < 0.5 * left); /* with many samples mipmaps do not blur */
-    fixture_close(&f);
 }
 
 TEST_BY_TURNS(magnified_textures_keep_their_bytes, 1, 2)
 {
-    struct fixture f = fixture_open(checkers(60), NULL, NULL);
+    own_fixture f = fixture_open(checkers(60), NULL, NULL);
     for (int far = 0; far < 2; ++far) {
         whit_renderer_params params = {.width = SIDE, .height = SIDE};
         params.camera = (whit_camera)CAMERA_AT(0.2, 4, 0.1, 0, 0, 0, 0, 0, -1, 40);
@@ -211,14 +209,13 @@ TEST_BY_TURNS(magnified_textures_keep_their_bytes, 1, 2)
         size_t bytes = (size_t)SIDE * SIDE * 4 * sizeof *with.pixels;
         assert_int_equal(memcmp(with.pixels, without.pixels, bytes) != 0, far);
     }
-    fixture_close(&f);
 }
 
 /* The viewer adds up pictures of parts of the samples: the picture of four is the sum of its parts.
  */
 TEST(parts_of_samples_add_up)
 {
-    struct fixture f = fixture_open(far_textures(), NULL, NULL);
+    own_fixture f = fixture_open(far_textures(), NULL, NULL);
     struct image whole = picture_by(&f, WHIT_MINIFICATION_MIPMAP, 0, 4), parts[4];
     for (uint32_t i = 0; i < 4; ++i)
         parts[i] = picture_by(&f, WHIT_MINIFICATION_MIPMAP, i, 1);
@@ -230,7 +227,6 @@ TEST(parts_of_samples_add_up)
     image_finish(&whole);
     for (int i = 0; i < 4; ++i)
         image_finish(&parts[i]);
-    fixture_close(&f);
 }
 
 /* ---- Cases without smaller levels ---- */
@@ -246,12 +242,11 @@ TEST(scenes_without_textures_have_the_same_kernels)
 {
     for (int textured = 0; textured < 2; ++textured) {
         struct scene *scene = textured ? checkers(1) : floor_scene(3);
-        struct fixture f = fixture_open(scene, NULL, NULL);
+        own_fixture f = fixture_open(scene, NULL, NULL);
         const struct gpu_spec with = spec_of(&f, WHIT_MINIFICATION_MIPMAP);
         const struct gpu_spec without = spec_of(&f, WHIT_MINIFICATION_NONE);
         assert_int_equal(with.SPEC_MINIFICATION, textured);
         assert_int_equal(memcmp(&with, &without, sizeof with) != 0, textured);
-        fixture_close(&f);
     }
 }
 
@@ -264,9 +259,8 @@ TEST(masks_have_no_levels)
     leaf.alpha_cutoff = 0.5f;
     use_often(&leaf, SCENE_SLOT_OPACITY, add_noise(scene, 8, 8, true), 1, SCENE_WRAP_REPEAT);
     add_object(scene, mesh_plane(4), leaf, 0, 0, 0);
-    struct fixture f = fixture_open(scene, NULL, NULL);
+    own_fixture f = fixture_open(scene, NULL, NULL);
     assert_int_equal(spec_of(&f, WHIT_MINIFICATION_MIPMAP).SPEC_MINIFICATION, 0);
-    fixture_close(&f);
 }
 
 /* Buffers of devices hold at least 128 MiB, of which level 0 takes nine tenths here: the other
@@ -283,7 +277,7 @@ TEST(levels_that_do_not_fit_are_left_out)
     use_texture(&m, SCENE_SLOT_DIFFUSE, scene_put_texture(scene, side, side, rgba));
     free(rgba);
     add_object(scene, mesh_plane(2), m, 0, 0, 0);
-    struct fixture f = fixture_open(scene, NULL, NULL);
+    own_fixture f = fixture_open(scene, NULL, NULL);
     whit_renderer_params params = {.width = SIDE, .height = SIDE, .load_path = WHIT_LOAD_STORAGE};
     bool fits = device_get_info(f.device)->max_storage_range_bytes / 4 >
                 mipmap_first(side, side, MIPMAP_LEVELS_MAX);
@@ -294,5 +288,4 @@ TEST(levels_that_do_not_fit_are_left_out)
     own_image without = render(&f);
     size_t bytes = (size_t)SIDE * SIDE * 4 * sizeof *with.pixels;
     assert_int_equal(memcmp(with.pixels, without.pixels, bytes) != 0, fits);
-    fixture_close(&f);
 }

@@ -98,7 +98,7 @@ static struct difference compare_scene(struct scene *scene, const char *name)
 {
     const struct reference_params params = {
         .picture = {.width = WIDTH, .height = HEIGHT, .depth = 6}, .whole_stops = true};
-    struct fixture f = fixture_open(scene, &(whit_accel_params){0}, &params.picture);
+    own_fixture f = fixture_open(scene, &(whit_accel_params){0}, &params.picture);
     own_picture device = render_picture(&f), reference = reference_picture(f.accel, &params);
     struct moved moved = move_camera(f.accel, &params);
     struct difference d = compare(&moved, &device, &reference);
@@ -108,7 +108,6 @@ static struct difference compare_scene(struct scene *scene, const char *name)
                   reference.stats.render_ms);
     for (int i = 0; i < MOVES; ++i)
         reference_destroy(moved.all[i]);
-    fixture_close(&f);
     return d;
 }
 

@@ -95,7 +95,7 @@ static void check_scene(struct scene *scene, const whit_accel_params *accel,
     whit_renderer_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3, .camera = *camera};
     static struct expected e;
     struct picture plain[3];
-    struct fixture f = fixture_open(scene, accel, &params);
+    own_fixture f = fixture_open(scene, accel, &params);
     for (int i = 0; i < 3; ++i) {
         params.sampling.count = 4u << (2 * i);
         fixture_renew(&f, &params);
@@ -120,7 +120,6 @@ static void check_scene(struct scene *scene, const whit_accel_params *accel,
     }
     for (int i = 0; i < 3; ++i)
         picture_finish(&plain[i]);
-    fixture_close(&f);
 }
 
 /* 1: nothing differs by more, so all pixels keep 4. */
@@ -181,7 +180,7 @@ TEST(progress_goes_on_to_the_end)
                                    .progress = watch,
                                    .tile_size = 16};
     last_done = 0.0;
-    struct fixture f = fixture_open(glass_scene(), NULL, &params);
+    own_fixture f = fixture_open(glass_scene(), NULL, &params);
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     assert_int_equal(backwards, 0);
     assert_true(last_done > 0.999 && last_done < 1.001);
@@ -196,7 +195,6 @@ TEST(progress_goes_on_to_the_end)
     stop_now = false;
     last_done = 0.0;
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
-    fixture_close(&f);
 }
 
 TEST(nonsense_is_refused)
@@ -209,7 +207,6 @@ TEST(nonsense_is_refused)
         {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 1.5}},
         {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = NAN}},
         {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1}, .count = true}};
-    struct fixture f = fixture_open(terrain_scene(), NULL, NULL);
+    own_fixture f = fixture_open(terrain_scene(), NULL, NULL);
     fixture_refuses(&f, wrong, sizeof wrong / sizeof *wrong);
-    fixture_close(&f);
 }

@@ -110,7 +110,7 @@ static void check_any_order(const char *name, struct scene *scene, const double 
 {
     static const int order[STEPS] = {1, 2, 0, 2, 1, 1};
     struct picture anew[TIMES];
-    struct fixture f = fixture_open(scene, params, &animate_params);
+    own_fixture f = fixture_open(scene, params, &animate_params);
     for (int i = 0; i < TIMES; ++i)
         anew[i] = take_anew(&f, params->instances, times_s[i]);
     for (int i = 0; i < 2; ++i)
@@ -123,7 +123,6 @@ static void check_any_order(const char *name, struct scene *scene, const double 
     }
     for (int i = 0; i < TIMES; ++i)
         picture_finish(&anew[i]);
-    fixture_close(&f);
 }
 
 TEST(pictures_are_those_of_new_renderers)
@@ -155,7 +154,7 @@ static const struct pipeline *shading_of(const struct fixture *f)
 
 TEST_BY_TURNS(a_deeper_tree_gets_a_larger_stack, 0, 2)
 {
-    struct fixture f = fixture_open(strung_out(), NULL, &animate_params);
+    own_fixture f = fixture_open(strung_out(), NULL, &animate_params);
     uint32_t depth = f.accel->instance_depth, size = f.renderer->node_stack_size;
     const struct pipeline *pipeline = shading_of(&f);
     assert_int_equal(renderer_set_time(f.renderer, 0.01), WHIT_OK);
@@ -170,7 +169,6 @@ TEST_BY_TURNS(a_deeper_tree_gets_a_larger_stack, 0, 2)
     assert_int_equal(renderer_set_time(f.renderer, 0.0), WHIT_OK);
     assert_int_equal(f.renderer->node_stack_size, size);
     assert_ptr_equal(shading_of(&f), pipeline);
-    fixture_close(&f);
 }
 
 /* The root mean square difference over all channels, relative to the mean of the first image. */
@@ -192,7 +190,7 @@ static double difference(const struct image *a, const struct image *b)
 TEST_BY_TURNS(a_flattened_scene_looks_the_same, 1, 2)
 {
     static const double times_s[] = {0.0, 0.9, 2.0};
-    struct fixture f = fixture_open(everything_moves(), NULL, &animate_params);
+    own_fixture f = fixture_open(everything_moves(), NULL, &animate_params);
     for (int i = 0; i < 3; ++i) {
         own_picture instanced = take_anew(&f, WHIT_INSTANCES_ON, times_s[i]);
         own_picture flat = take_anew(&f, WHIT_INSTANCES_OFF, times_s[i]);
@@ -201,13 +199,12 @@ TEST_BY_TURNS(a_flattened_scene_looks_the_same, 1, 2)
         assert_true(off < 1e-4);
         assert_same_image("identities", &instanced.ids, &flat.ids);
     }
-    fixture_close(&f);
 }
 
 /* Batches of rays are traced in the scene at the time of the pictures. */
 TEST(traced_rays_follow)
 {
-    struct fixture f = fixture_open(leaves_its_place(), NULL, &animate_params);
+    own_fixture f = fixture_open(leaves_its_place(), NULL, &animate_params);
     const struct gpu_ray ray = {.origin = {1.3f, 0, 5}, .dir = {0, 0, -1}, .t_max = INFINITY};
     static const double times_s[] = {0.0, 1.0, 0.0, 2.0, 1.0};
     for (int i = 0; i < 5; ++i) {
@@ -216,15 +213,13 @@ TEST(traced_rays_follow)
         assert_int_equal(trace_beside_twin(&f, false, &ray, 1, &hit, NULL).hits, 0);
         assert_int_equal(hit.primitive != HIT_NONE, times_s[i] == 1.0);
     }
-    fixture_close(&f);
 }
 
 TEST(an_old_picture_is_not_taken_for_a_new_one)
 {
-    struct fixture f = fixture_open(leaves_its_place(), NULL, &animate_params);
+    own_fixture f = fixture_open(leaves_its_place(), NULL, &animate_params);
     struct image image = render(&f), again = {0};
     assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
     assert_int_equal(renderer_read_color(f.renderer, &again), WHIT_ERROR_USAGE);
     image_finish(&image);
-    fixture_close(&f);
 }

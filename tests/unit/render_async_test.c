@@ -122,7 +122,7 @@ TEST(both_kernels_draw_the_same)
         params.packets = WHIT_PACKETS_OFF;
         params.classes = WHIT_CLASSES_MANY;
         params.effects_removed = i == 0 ? 0 : removed;
-        struct fixture f = fixture_open(make[i](), NULL, &params);
+        own_fixture f = fixture_open(make[i](), NULL, &params);
         whit_stats begun = stats_of(f.renderer);
         assert_true(begun.general);
         own_image first = render_general(&f), second = render_specialised(&f);
@@ -136,7 +136,6 @@ TEST(both_kernels_draw_the_same)
         assert_int_equal(stats_of(f.renderer).kernel_instructions, done.kernel_instructions);
         assert_same_image("general", &first, &at_once);
         assert_same_image("specialised", &second, &at_once);
-        fixture_close(&f);
     }
 }
 
@@ -146,25 +145,23 @@ TEST(removed_effects_stay_removed)
     whit_renderer_params params = beside_params(glass_camera);
     params.shadows = WHIT_SHADOWS_NONE;
     params.effects_removed |= UINT64_C(1) << SCENE_EFFECT_REFLECTION;
-    struct fixture f = fixture_open(glass_scene(), NULL, &params);
+    own_fixture f = fixture_open(glass_scene(), NULL, &params);
     own_image first = render_general(&f), second = render_specialised(&f);
     assert_same_image("specialised", &first, &second);
     assert_int_equal(stats_of(f.renderer).rays_shadow, 0);
     assert_int_equal(stats_of(f.renderer).rays_reflected, 0);
-    fixture_close(&f);
 }
 
 /* A renderer that is asked for a kernel with all effects starts no thread. */
 TEST(all_effects_need_no_thread)
 {
     whit_renderer_params params = beside_params((whit_camera){.name = NULL});
-    struct fixture f = fixture_open(terrain_scene(), NULL, &params);
+    own_fixture f = fixture_open(terrain_scene(), NULL, &params);
     params.all_effects = true;
     fixture_renew(&f, &params);
     struct image image = render(&f);
     assert_null(f.renderer->async.job);
     image_finish(&image);
-    fixture_close(&f);
 }
 
 /* Other scenes, other times, destroyed passes and cancelled pictures come while the thread is at
@@ -175,7 +172,7 @@ TEST(anything_may_come_in_between)
     whit_renderer_params params =
         beside_params((whit_camera)CAMERA_AT(0, 6, 9, 0, 0, 0, 0, 1, 0, 40));
     params.cancel = &cancel;
-    struct fixture f = fixture_open(terrain_scene(), NULL, &params);
+    own_fixture f = fixture_open(terrain_scene(), NULL, &params);
     /* The renderer is destroyed without a picture: before the thread begins, while it is at work,
        and when it has ended. */
     for (int i = 0; i < 3; ++i) {
@@ -208,5 +205,4 @@ TEST(anything_may_come_in_between)
     before = render_specialised(&f);
     assert_int_equal(stats_of(f.renderer).rays_shadow, 0);
     image_finish(&before);
-    fixture_close(&f);
 }

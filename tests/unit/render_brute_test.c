@@ -62,7 +62,7 @@ TEST(rays_equal_those_of_trees)
     struct scene *(*const make[])(void) = {terrain_scene, plain_scene, ring_scene};
     for (int i = 0; i < 3; ++i) {
         const whit_renderer_params params = {.width = 16, .height = 16, .count = true};
-        struct fixture f = fixture_open(make[i](), &no_trees, &params);
+        own_fixture f = fixture_open(make[i](), &no_trees, &params);
         const struct accel_mesh *mesh = &f.accel->meshes[0];
         check_boxes(f.accel, 0, f.accel->instance_node_count);
         check_boxes(f.accel, mesh->first_node, mesh->node_count);
@@ -70,7 +70,6 @@ TEST(rays_equal_those_of_trees)
         assert_int_equal(accel_create(&fixture_log, f.scene, NULL, &trees), WHIT_OK);
         check_hits(&f, trees);
         accel_destroy(trees);
-        fixture_close(&f);
     }
 }
 
@@ -200,7 +199,7 @@ TEST(many_shadows_are_refused)
                                                 .position = {0, 5, 0},
                                                 .edge_u = {1, 0, 0},
                                                 .edge_v = {0, 0, 1}});
-    struct fixture f = fixture_open(scene, &no_trees, NULL);
+    own_fixture f = fixture_open(scene, &no_trees, NULL);
     const whit_renderer_params params = {.width = 8, .height = 8, .light_samples = 64};
     renderer_destroy(f.renderer);
     assert_int_equal(renderer_create(&warnings_log, f.device, f.accel, &params, &f.renderer),
@@ -215,12 +214,11 @@ TEST(many_shadows_are_refused)
         f.accel->iterations = 0;
         assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_STATUS);
     }
-    fixture_close(&f);
 }
 
 TEST(empty_scenes_have_a_picture)
 {
-    struct fixture f = fixture_open(scene_begin(&fixture_log, "empty"), &no_trees, NULL);
+    own_fixture f = fixture_open(scene_begin(&fixture_log, "empty"), &no_trees, NULL);
     struct gpu_ray ray = {{0, 0, 5}, 0, {0, 0, -1}, INFINITY};
     struct gpu_hit hit;
     assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit, NULL), WHIT_OK);
@@ -228,5 +226,4 @@ TEST(empty_scenes_have_a_picture)
     own_picture picture = render_picture(&f);
     for (uint32_t i = 0; i < 2 * picture.ids.width * picture.ids.height; ++i)
         assert_int_equal(picture.ids.words[i], HIT_NONE);
-    fixture_close(&f);
 }

@@ -258,7 +258,7 @@ TEST(view_along_up_has_a_picture)
                                  CAMERA_AT(0, 5, 0, 0, 0, 0, 0, -7, 0, 40),
                                  CAMERA_AT(0, 5, 0, 0, 0, 0, 0, 0, 0, 40),
                                  CAMERA_AT(0, 5, 0, 0, 0, 0, 1e-30, 1e30, 0, 40)};
-    struct fixture f = fixture_open(scene, NULL, &params);
+    own_fixture f = fixture_open(scene, NULL, &params);
     for (size_t i = 0; i < sizeof views / sizeof *views; ++i) {
         params.camera = views[i];
         fixture_renew(&f, &params);
@@ -272,7 +272,6 @@ TEST(view_along_up_has_a_picture)
         uint32_t side = (uint32_t)lround(sqrt((double)lit));
         assert_int_equal(side * side, lit);
     }
-    fixture_close(&f);
 }
 
 /* A ray through the top row's middle leaves the direction of view by half the angle of view, less
@@ -286,7 +285,7 @@ TEST(angles_of_view_are_kept)
         add_marker(scene, 0.5, 0, 0, -1e5);
         const whit_renderer_params params = {
             .width = 9, .height = 101, .camera = CAMERA_AT(0, 0, 0, 0, 0, -1, 0, 1, 0, angles[i])};
-        struct fixture f = fixture_open(scene, NULL, &params);
+        own_fixture f = fixture_open(scene, NULL, &params);
         own_image image = render(&f);
         assert_finite(&image);
         float angle = (float)(angles[i] * PI / 180.0); /* as the camera holds it */
@@ -299,7 +298,6 @@ TEST(angles_of_view_are_kept)
         assert_near(ray.dir[2], -1.0 / sqrt(1.0 + half * half), 1e-6);
         /* The sky's gradient makes the pixel's value the y of the ray's direction. */
         assert_near(image.pixels[4 * 4], (double)ray.dir[1], 1e-6);
-        fixture_close(&f);
     }
 }
 
@@ -336,7 +334,7 @@ TEST(sizes_may_be_odd)
     struct scene *scene = dark_scene((double[]){2, 6, 8}, (double[]){0, 0, 0});
     add_object(scene, mesh_terrain(10.0, 2.0, 40, 3), material_plain("ground"), 0, 0, 0);
     whit_renderer_params params = {.width = 1, .height = 1};
-    struct fixture f = fixture_open(scene, NULL, &params);
+    own_fixture f = fixture_open(scene, NULL, &params);
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
         params.width = sizes[i][0];
         params.height = sizes[i][1];
@@ -359,7 +357,6 @@ TEST(sizes_may_be_odd)
         assert_int_equal(bad, 0);
         assert_true(hits > 0);
     }
-    fixture_close(&f);
 }
 
 /* Two walls, one a millionth away and one a million, which in the picture meet at one edge. */

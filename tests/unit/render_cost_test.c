@@ -32,7 +32,7 @@ static void check_scene(struct scene *(*make)(void), bool instanced)
 {
     whit_cost all[ORDERS];
     for (uint32_t order = 0; order < ORDERS; ++order) {
-        struct fixture f = open_counting(make(), order);
+        own_fixture f = open_counting(make(), order);
         assert_int_equal(f.accel->single_identity, !instanced);
         whit_cost c = all[order] = check_costs(&f, false), any = check_costs(&f, true);
         print_message("  %-8s %u rays: %u pairs (any: %u), %u leaves, %u instances, %u triangles; "
@@ -46,7 +46,6 @@ static void check_scene(struct scene *(*make)(void), bool instanced)
         assert_true(any.triangles < c.triangles);
         /* Boxes of the deepest pair are at most as deep as the trees. */
         assert_true(c.depth <= f.accel->mesh_depth + (instanced ? f.accel->instance_depth : 0));
-        fixture_close(&f);
     }
     assert_true(all[ORDER_DISTANCE].inner_nodes < all[ORDER_BASIC].inner_nodes);
     assert_true(all[ORDER_SIGN].inner_nodes < all[ORDER_BASIC].inner_nodes);
@@ -69,12 +68,11 @@ TEST_BY_TURNS(clipped_trees_cost_the_same, 0, 2)
     struct scene *(*const make[])(void) = {terrain_scene, ring_scene};
     for (int i = 0; i < 2; ++i) {
         const whit_renderer_params params = {.width = 16, .height = 16, .count = true};
-        struct fixture f = fixture_open(make[i](), NULL, &params);
+        own_fixture f = fixture_open(make[i](), NULL, &params);
         whit_cost plain = check_costs(&f, false);
         f.accel->clipped = true;
         fixture_renew(&f, &params);
         assert_true(check_costs(&f, false).inner_nodes > plain.inner_nodes);
-        fixture_close(&f);
     }
 }
 
@@ -84,16 +82,15 @@ TEST_BY_TURNS(flat_trees_cost_the_same, 1, 2)
     const whit_accel_params flat = {.instances = WHIT_INSTANCES_OFF};
     const whit_renderer_params params = {
         .width = 16, .height = 16, .traversal = ORDER_SIGN, .count = true};
-    struct fixture f = fixture_open(ring_scene(), &flat, &params);
+    own_fixture f = fixture_open(ring_scene(), &flat, &params);
     assert_true(f.accel->flat);
     for (int any = 0; any < 2; ++any)
         assert_int_equal(check_costs(&f, any).instances, 0);
-    fixture_close(&f);
 }
 
 TEST(costs_must_be_asked_for)
 {
-    struct fixture f = fixture_open(terrain_scene(), NULL, NULL);
+    own_fixture f = fixture_open(terrain_scene(), NULL, NULL);
     struct gpu_ray ray = {{0, 0, 5}, 0, {0, 0, -1}, INFINITY};
     struct gpu_hit hit;
     struct gpu_cost cost;
@@ -101,7 +98,6 @@ TEST(costs_must_be_asked_for)
     assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit, &cost), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     assert_int_equal(renderer_read_costs(f.renderer, RAY_PRIMARY, &image), WHIT_ERROR_USAGE);
-    fixture_close(&f);
 }
 
 /* ---- Trees ---- */
@@ -145,15 +141,12 @@ static whit_result trace_caterpillar(uint32_t depth, uint32_t stated,
                                      const whit_renderer_params *params, struct gpu_hit hits[2],
                                      struct gpu_cost costs[2])
 {
-    struct fixture f = {.device = fixture_device()};
+    own_fixture f = {.device = fixture_device()};
     f.accel = caterpillar_accel(&f.scene, depth);
     f.accel->mesh_depth = stated;
     fixture_renew(&f, params);
     struct gpu_ray rays[2] = {caterpillar_ray(depth, false), caterpillar_ray(depth, true)};
-    whit_result result =
-        renderer_trace(f.renderer, rays, 2, false, hits, params->count ? costs : NULL);
-    fixture_close(&f);
-    return result;
+    return renderer_trace(f.renderer, rays, 2, false, hits, params->count ? costs : NULL);
 }
 
 /* Deep trees are traversed with the short stack of lavapipe, and without it. */
@@ -199,7 +192,7 @@ TEST(duplicates_give_the_first)
             mesh.indices[k] = k % 3;
         struct scene *scene = scene_begin(&fixture_log, "alike");
         scene_put(scene, mesh, NULL);
-        struct fixture f = open_counting(scene, order);
+        own_fixture f = open_counting(scene, order);
         struct gpu_ray rays[64];
         struct gpu_hit hits[64];
         uint64_t random = 3;
@@ -211,7 +204,6 @@ TEST(duplicates_give_the_first)
         assert_int_equal(trace_beside_twin(&f, false, rays, 64, hits, NULL).hits, 0);
         for (int r = 0; r < 64; ++r)
             assert_int_equal(hits[r].primitive, 0);
-        fixture_close(&f);
     }
 }
 
@@ -222,7 +214,7 @@ TEST(a_leaf_alone_has_no_boxes)
     caterpillar_corners(0, corners);
     struct scene *scene = scene_begin(&fixture_log, "triangle");
     scene_put(scene, mesh_triangles(corners, 1), NULL);
-    struct fixture f = open_counting(scene, ORDER_DISTANCE);
+    own_fixture f = open_counting(scene, ORDER_DISTANCE);
     struct gpu_ray ray = caterpillar_ray(0, true);
     struct gpu_hit hit;
     struct gpu_cost cost;
@@ -230,7 +222,6 @@ TEST(a_leaf_alone_has_no_boxes)
     assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit, &cost), WHIT_OK);
     assert_int_equal(hit.primitive, 0);
     assert_memory_equal(&cost, &expected, sizeof cost);
-    fixture_close(&f);
 }
 
 /* ---- Pictures ---- */
@@ -310,7 +301,7 @@ TEST(pictures_cost_the_same)
                                        .traversal = order,
                                        .tile_size = 16,
                                        .count = true};
-        struct fixture f = fixture_open(glass_scene(), NULL, &params);
+        own_fixture f = fixture_open(glass_scene(), NULL, &params);
         struct counted counted = render_counted(&f);
         check_primary(&f, &counted, CAMERA_PERSPECTIVE);
         check_sums(&counted);
@@ -319,7 +310,6 @@ TEST(pictures_cost_the_same)
         own_picture plain = render_picture(&f);
         assert_same_picture("counting", &counted.picture, &plain);
         counted_finish(&counted);
-        fixture_close(&f);
     }
 }
 
@@ -355,13 +345,11 @@ TEST(camera_rays_are_those_of_c)
         for (uint32_t samples = 1; samples <= 64; samples *= kind == CAMERA_LENS ? 4 : 64) {
             whit_renderer_params params = {
                 .width = 90, .height = 70, .sampling.count = samples, .count = true};
-            struct fixture f =
-                fixture_open(seen_by(terrain_scene(), &cameras[kind]), NULL, &params);
+            own_fixture f = fixture_open(seen_by(terrain_scene(), &cameras[kind]), NULL, &params);
             struct counted counted = render_counted(&f);
             check_primary(&f, &counted, kind);
             assert_true(counted.picture.stats.costs[RAY_PRIMARY].leaves > 90 * 70 / 4 * samples);
             counted_finish(&counted);
-            fixture_close(&f);
         }
     }
 }
@@ -376,7 +364,7 @@ TEST(samples_add_up)
                                    .camera = GLASS_CAMERA,
                                    .sampling.count = 4,
                                    .count = true};
-    struct fixture f = fixture_open(glass_scene(), NULL, &params);
+    own_fixture f = fixture_open(glass_scene(), NULL, &params);
     struct counted counted = render_counted(&f);
     const whit_stats first = counted.picture.stats;
     for (uint32_t i = 0; i < 40 * 24; ++i)
@@ -389,5 +377,4 @@ TEST(samples_add_up)
     counted = render_counted(&f);
     assert_memory_equal(first.costs, counted.picture.stats.costs, sizeof first.costs);
     counted_finish(&counted);
-    fixture_close(&f);
 }

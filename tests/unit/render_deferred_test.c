@@ -26,7 +26,7 @@ TEST(batches_are_those_of_looks_in_place)
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(4 * (size_t)RAYS, sizeof *hits);
     assert_true(rays && hits);
-    struct fixture f = fixture_open(ring_scene(), NULL, &counted);
+    own_fixture f = fixture_open(ring_scene(), NULL, &counted);
     aim_rays(&f, rays, RAYS, 11);
     for (int any = 0; any < 2; ++any)
         assert_int_equal(renderer_trace(f.renderer, rays, RAYS, any, hits + any * RAYS, NULL),
@@ -44,7 +44,6 @@ TEST(batches_are_those_of_looks_in_place)
         assert_true(count > RAYS / 20 && count < RAYS);
         assert_int_equal(differ, 0);
     }
-    fixture_close(&f);
     free(rays);
     free(hits);
 }
@@ -56,7 +55,7 @@ static void check_picture(const char *name, struct scene *scene, whit_camera cam
 {
     whit_renderer_params counted = exact_params(true), deferred = exact_params(false);
     counted.camera = deferred.camera = camera;
-    struct fixture f = fixture_open(scene, NULL, &counted);
+    own_fixture f = fixture_open(scene, NULL, &counted);
     own_picture in_place = render_picture(&f);
     fixture_renew(&f, &deferred);
     own_picture later = render_picture(&f);
@@ -64,7 +63,6 @@ static void check_picture(const char *name, struct scene *scene, whit_camera cam
     assert_int_equal(in_place.stats.deferred, 0);
     assert_true(later.stats.deferred >= deferred_min);
     assert_same_picture(name, &in_place, &later);
-    fixture_close(&f);
 }
 
 /* The camera is straight above a corner of the ground's grid, so that the rays of whole rows and

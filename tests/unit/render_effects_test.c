@@ -200,11 +200,10 @@ static struct traced trace(struct scene *scene)
             (struct gpu_ray){.origin = {0, 4, 7},
                              .dir = {0.25f * (float)(i % 32 - 16), -4, -0.6f * (float)(i / 32)},
                              .t_max = INFINITY};
-    struct fixture f = fixture_open(scene, NULL, &small);
+    own_fixture f = fixture_open(scene, NULL, &small);
     assert_int_equal(renderer_trace(f.renderer, rays, RAYS, false, traced.hits, NULL), WHIT_OK);
     pipeline_get_info(f.renderer->trace.singles[0].pipeline, &info);
     traced.instructions = info.instructions;
-    fixture_close(&f);
     return traced;
 }
 
@@ -421,9 +420,8 @@ TEST_BY_TURNS(effects_added_do_not_matter, 1, 2)
 static whit_kernel_info kernel_of(struct scene *scene, const whit_renderer_params *params)
 {
     whit_kernel_info info;
-    struct fixture f = fixture_open(scene, NULL, params);
+    own_fixture f = fixture_open(scene, NULL, params);
     assert_int_equal(renderer_get_kernel(f.renderer, &info), WHIT_OK);
-    fixture_close(&f);
     return info;
 }
 
@@ -530,7 +528,7 @@ static void check_who_refracts(whit_classes classes)
     whit_renderer_params params = small;
     params.count = true;
     params.classes = classes;
-    struct fixture f = fixture_open(quarters_scene(), NULL, &params);
+    own_fixture f = fixture_open(quarters_scene(), NULL, &params);
     own_image reflected = {0}, refracted = {0};
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     assert_int_equal(renderer_read_costs(f.renderer, RAY_REFLECTED, &reflected), WHIT_OK);
@@ -547,7 +545,6 @@ static void check_who_refracts(whit_classes classes)
                 assert_true(mirrored[at].rays > 0);
         }
     }
-    fixture_close(&f);
 }
 
 /* One kernel for all materials must send no rays into materials other than glass; a kernel for each
@@ -575,7 +572,7 @@ TEST_BY_TURNS(what_comes_into_view_is_right_at_once, 1, 2)
     later.time_s = 1.0;
     own_picture expected = picture_of(rising_glass_scene(), NULL, &later);
     assert_true(expected.stats.rays_refracted > 0);
-    struct fixture f = fixture_open(rising_glass_scene(), NULL, &small);
+    own_fixture f = fixture_open(rising_glass_scene(), NULL, &small);
     own_picture before = render_picture(&f);
     assert_int_equal(before.stats.rays_refracted, 0);
     const struct pipeline *pipeline = f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline;
@@ -583,5 +580,4 @@ TEST_BY_TURNS(what_comes_into_view_is_right_at_once, 1, 2)
     own_picture after = render_picture(&f);
     assert_same_picture("risen glass", &after, &expected);
     assert_ptr_equal(f.renderer->picture.stages.set.passes[STAGE_SHADE].pipeline, pipeline);
-    fixture_close(&f);
 }

@@ -17,7 +17,7 @@ static struct scene *furnace(struct scene_mesh mesh, struct scene_material m)
 static void check_furnace(const char *name, struct scene *scene)
 {
     const whit_renderer_params params = {.width = 32, .height = 32, .depth = 5};
-    struct fixture f = fixture_open(scene, NULL, &params);
+    own_fixture f = fixture_open(scene, NULL, &params);
     own_picture picture = render_picture(&f);
     const whit_stats *stats = &picture.stats;
     double highest = 0, worst = 0, cut = 0;
@@ -35,7 +35,6 @@ static void check_furnace(const char *name, struct scene *scene)
     assert_true(highest <= 1 + 1e-4 && worst <= 1e-4); /* NUMERICS O13 */
     assert_true(fabs(stats->weight_cut_depth - cut) < 1e-6 && stats->weight_cut_bailout == 0);
     assert_true(stats->rays_cut_bailout == 0 && (stats->rays_cut_depth > 0) == (cut > 0));
-    fixture_close(&f);
 }
 
 TEST(white_furnace)
@@ -75,7 +74,7 @@ TEST_BY_TURNS(facing_mirrors_end, 1, 2)
             add_object(scene, mesh_box(6, 6, 1), shining, 0, 0, i ? 2.5 : -2.5);
         scene_put_lamp(scene, 0, 50, 0, 1); /* else the mirrors would be lights */
         const whit_renderer_params params = {.width = 15, .height = 15, .depth = depths[d]};
-        struct fixture f = fixture_open(scene, NULL, &params);
+        own_fixture f = fixture_open(scene, NULL, &params);
         struct image image = render(&f);
         assert_near(middle(&image)[0], 0.01 * (depths[d] + 1), 1e-5);
         float cuts[2];
@@ -87,7 +86,6 @@ TEST_BY_TURNS(facing_mirrors_end, 1, 2)
         }
         image_finish(&before);
         before = image;
-        fixture_close(&f);
     }
     image_finish(&before);
 }

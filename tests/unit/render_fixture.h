@@ -95,6 +95,9 @@ static inline void fixture_close(struct fixture *f)
     scene_destroy(f->scene);
 }
 
+/* Closed at the end of its block. */
+#define own_fixture __attribute__((cleanup(fixture_close))) struct fixture
+
 /* Asserts that no renderer of the trees of `f` can be made with any params of `wrong`. */
 static inline void fixture_refuses(const struct fixture *f, const whit_renderer_params *wrong,
                                    size_t count)
@@ -144,19 +147,15 @@ static inline void picture_finish(struct picture *picture)
 static inline struct image color_of(struct scene *scene, const whit_accel_params *accel,
                                     const whit_renderer_params *params)
 {
-    struct fixture f = fixture_open(scene, accel, params);
-    struct image image = render(&f);
-    fixture_close(&f);
-    return image;
+    own_fixture f = fixture_open(scene, accel, params);
+    return render(&f);
 }
 
 static inline struct picture picture_of(struct scene *scene, const whit_accel_params *accel,
                                         const whit_renderer_params *params)
 {
-    struct fixture f = fixture_open(scene, accel, params);
-    struct picture picture = render_picture(&f);
-    fixture_close(&f);
-    return picture;
+    own_fixture f = fixture_open(scene, accel, params);
+    return render_picture(&f);
 }
 
 /* The number of pixels whose bytes differ. */

@@ -350,7 +350,7 @@ TEST(packets_to_a_light_shade_as_rays_do)
             /* Else its kernels take 6 s more to compile. */
             .effects_removed = cases[i].exact ? UINT64_C(1) << SCENE_EFFECT_REFRACTION : 0,
             .numerics = cases[i].exact ? NUMERICS_EXACT : NUMERICS_WATERTIGHT};
-        struct fixture f =
+        own_fixture f =
             fixture_open(rings_under(light, cases[i].moved, cases[i].slope), &accel, &params);
         own_image alone = render(&f);
         params.packets = WHIT_PACKETS_ON;
@@ -359,6 +359,5 @@ TEST(packets_to_a_light_shade_as_rays_do)
         print_message("  light %zu: sum %g\n", i, red_sum(&alone));
         assert_true(red_sum(&alone) > 0.0);
         assert_same_image("packets", &alone, &together);
-        fixture_close(&f);
     }
 }

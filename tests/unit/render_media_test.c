@@ -127,11 +127,10 @@ TEST_BY_TURNS(lone_bodies_need_less, 2, 4)
         for (int all = 0; all < 2; ++all) {
             const whit_renderer_params params = {
                 .width = 16, .height = 16, .depth = 6, .all_effects = all};
-            struct fixture f = fixture_open(layer_scene(layers, count), NULL, &params);
+            own_fixture f = fixture_open(layer_scene(layers, count), NULL, &params);
             struct gpu_spec spec = variant_spec(&f.renderer->picture);
             assert_int_equal(spec.SPEC_MEDIA, all ? MEDIA_TOUCH : expected[count]);
             images[all] = render(&f);
-            fixture_close(&f);
         }
         assert_same_image("with every effect", &images[0], &images[1]);
         image_finish(&images[0]);
@@ -157,10 +156,9 @@ TEST(shared_faces_are_found_at_every_level)
                                              .depth = 4,
                                              .numerics =
                                                  exact ? NUMERICS_EXACT : NUMERICS_WATERTIGHT};
-        struct fixture f = fixture_open(scene, NULL, &params);
+        own_fixture f = fixture_open(scene, NULL, &params);
         assert_int_equal(variant_spec(&f.renderer->picture).SPEC_MEDIA, MEDIA_TOUCH);
         images[exact] = render(&f);
-        fixture_close(&f);
     }
     double worst = 0;
     for (size_t i = 0; i < 4 * (size_t)(40 * 40); ++i)
@@ -191,14 +189,13 @@ TEST(ninth_medium_is_an_error)
     for (int i = 0; i < 3; ++i) {
         const whit_renderer_params params = {
             .width = 8, .height = 8, .depth = 20, .bailout = WHIT_BAILOUT_DEFAULT};
-        struct fixture f = fixture_open(shell_scene(counts[i]), NULL, &params);
+        own_fixture f = fixture_open(shell_scene(counts[i]), NULL, &params);
         own_image image = {0};
         assert_int_equal(renderer_render(f.renderer), i == 0 ? WHIT_OK : WHIT_ERROR_STATUS);
         if (i == 0) {
             assert_int_equal(renderer_read_color(f.renderer, &image), WHIT_OK);
             assert_true(middle(&image)[0] > 0.9f && middle(&image)[0] < 1.0001f);
         }
-        fixture_close(&f);
     }
 }
 
@@ -223,24 +220,22 @@ TEST_BY_TURNS(open_meshes_stay_finite, 3, 4)
         add_object(scene, mesh, m, 0.5 * i - 0.5, 0, 0);
     }
     const whit_renderer_params params = {.width = 40, .height = 40, .depth = 8};
-    struct fixture f = fixture_open(scene, NULL, &params);
+    own_fixture f = fixture_open(scene, NULL, &params);
     assert_int_equal(f.renderer->frame.nested, 1);
     own_image image = render(&f);
     assert_range(&image, 0, 1.001);
-    fixture_close(&f);
 }
 
 /* ---- The camera inside ---- */
 
 static void check_eye(struct scene *scene, const uint32_t *expected, uint32_t count)
 {
-    struct fixture f = fixture_open(scene, NULL, NULL);
+    own_fixture f = fixture_open(scene, NULL, NULL);
     const struct gpu_frame *frame = &f.renderer->frame;
     const uint32_t words[] = {frame->eye_media0, frame->eye_media1, frame->eye_media2,
                               frame->eye_media3};
     for (uint32_t i = 0; i < MEDIA_MAX; ++i)
         assert_int_equal(words[i / 2] >> 16 * (i % 2) & 0xffff, i < count ? expected[i] + 1 : 0);
-    fixture_close(&f);
 }
 
 static struct scene_mesh ball(double radius)

@@ -38,7 +38,7 @@ static void check_levels(struct scene *scene, const whit_accel_params *accel_par
     struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
     assert_true(rays && hits);
     whit_renderer_params params = {.width = 16, .height = 16, .count = true};
-    struct fixture f = fixture_open(scene, accel_params, &params);
+    own_fixture f = fixture_open(scene, accel_params, &params);
     aim_rays(&f, rays, RAYS, 7);
     for (uint32_t level = 0; level < LEVELS; ++level) {
         params.numerics = level;
@@ -47,7 +47,6 @@ static void check_levels(struct scene *scene, const whit_accel_params *accel_par
         if (level == NUMERICS_EXACT)
             assert_int_equal(count_unlike_rational(&f, rays, hits), 0);
     }
-    fixture_close(&f);
     free(rays);
     free(hits);
 }
@@ -105,7 +104,7 @@ TEST(only_fast_leaks)
     struct scene *scene = scene_begin(&fixture_log, "test");
     scene_put(scene, mesh_sphere(2.0, 80, 40), NULL);
     whit_renderer_params params = {.width = 16, .height = 16, .packets = WHIT_PACKETS_ON};
-    struct fixture f = fixture_open(scene, NULL, &params);
+    own_fixture f = fixture_open(scene, NULL, &params);
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
     assert_true(rays && hits);
@@ -132,7 +131,6 @@ TEST(only_fast_leaks)
     assert_true(leaks[NUMERICS_FAST] > 0); /* else the rays are not hard enough */
     assert_int_equal(leaks[NUMERICS_WATERTIGHT], 0);
     assert_int_equal(leaks[NUMERICS_EXACT], 0);
-    fixture_close(&f);
     free(rays);
     free(hits);
 }
@@ -147,7 +145,7 @@ TEST(pictures_agree)
     if (cases_times() == 0)
         skip();
     whit_renderer_params params = glass_params;
-    struct fixture f = fixture_open(glass_scene(), NULL, &params);
+    own_fixture f = fixture_open(glass_scene(), NULL, &params);
     struct image pictures[LEVELS];
     for (uint32_t level = 0; level < LEVELS; ++level) {
         params.numerics = level;
@@ -170,7 +168,6 @@ TEST(pictures_agree)
     }
     for (uint32_t level = 0; level < LEVELS; ++level)
         image_finish(&pictures[level]);
-    fixture_close(&f);
 }
 
 /* Without trees every box is that of the whole scene, which changes neither exact decisions by

@@ -181,13 +181,12 @@ TEST_BY_TURNS(packets_are_chosen_where_they_pay, 3, 4)
         scene_put_lamp(scene, 3, 4, 3, 1);
         if (cases[i].instances)
             add_object(scene, mesh_box(1, 1, 1), material_plain("box"), 0, 3, 0);
-        struct fixture f = fixture_open(scene, NULL, &params);
+        own_fixture f = fixture_open(scene, NULL, &params);
         bool can = upload_can_widen(f.renderer); /* what lavapipe is for */
         print_message("  %u steps, %u pixels a side: %u rays a lane\n", cases[i].steps,
                       cases[i].side, f.renderer->packet_rays);
         assert_int_equal(f.renderer->packets, can && cases[i].rays > 1);
         assert_int_equal(f.renderer->packet_rays, cases[i].rays);
-        fixture_close(&f);
     }
 }
 
@@ -202,13 +201,12 @@ TEST_BY_TURNS(cut_loops_are_reported, 0, 4)
                                              .packets = i & 1 ? WHIT_PACKETS_ON : WHIT_PACKETS_OFF};
         const whit_accel_params accel = {.instances =
                                              i & 2 ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON};
-        struct fixture f = fixture_open(panes_scene(70000), &accel, &params);
+        own_fixture f = fixture_open(panes_scene(70000), &accel, &params);
         whit_result result = renderer_render(f.renderer);
         print_message("  70000 panes, packets %d, one tree %d: %s\n", i & 1, (i & 2) / 2,
                       whit_result_name(result));
         assert_int_equal(result,
                          device_get_limits(f.device)->loop_limited ? WHIT_ERROR_STATUS : WHIT_OK);
-        fixture_close(&f);
     }
 }
 
@@ -246,7 +244,7 @@ TEST_BY_TURNS(many_lights_defer_no_one, 2, 4)
     bool cancel = false;
     whit_renderer_params params = {.width = 8, .height = 8, .depth = 0, .cancel = &cancel};
     for (int lights = 4; lights <= 4000; lights += 3996) {
-        struct fixture f = fixture_open(lamps_scene(lights), NULL, &params);
+        own_fixture f = fixture_open(lamps_scene(lights), NULL, &params);
         struct progress progress = {.share = 1.0, .work_total = 1};
         struct gpu_chunk chunk = {.block_count = 1, .blocks_x = 1, .band_rows = 8};
         double longest_ms = 0.0;
@@ -258,7 +256,6 @@ TEST_BY_TURNS(many_lights_defer_no_one, 2, 4)
         assert_true(cancel);
         cancel = false;
         assert_int_equal(result, lights == 4 ? WHIT_OK : WHIT_ERROR_CANCELLED);
-        fixture_close(&f);
     }
 }
 
@@ -279,13 +276,12 @@ static struct glass_picture glass_picture(uint32_t tile_size, bool count)
     add_object(scene, mesh_icosphere(1, 2), glass, 0, 0, 0);
     const whit_renderer_params params = {
         .width = 64, .height = 64, .depth = 13, .tile_size = tile_size, .count = count};
-    struct fixture f = fixture_open(scene, NULL, &params);
+    own_fixture f = fixture_open(scene, NULL, &params);
     struct glass_picture glass_picture = {.picture = render_picture(&f)};
     if (count)
         assert_int_equal(renderer_read_costs(f.renderer, RAY_REFRACTED, &glass_picture.refracted),
                          WHIT_OK);
     glass_picture.was_full = f.renderer->picture.stages.blocks_max > 0;
-    fixture_close(&f);
     return glass_picture;
 }
 
@@ -299,7 +295,7 @@ static void check_shares(const whit_accel_params *accel)
                                          .tile_size = 32,
                                          .classes = WHIT_CLASSES_MANY,
                                          .time_stages = true};
-    struct fixture f = fixture_open(mixed_scene(), accel, &params);
+    own_fixture f = fixture_open(mixed_scene(), accel, &params);
     own_picture picture = render_picture(&f);
     const whit_stats *stats = &picture.stats;
     uint32_t worn[2][8] = {{0}}, all[2] = {0}, known = 0;
@@ -324,7 +320,6 @@ static void check_shares(const whit_accel_params *accel)
     }
     assert_int_equal(known, all[0] + all[1]); /* none is left out */
     assert_true(stats->share_count == 3);
-    fixture_close(&f);
 }
 
 TEST(shares_are_those_of_hits)
@@ -359,7 +354,7 @@ TEST(a_small_picture_is_one_tile)
 TEST(a_picture_begins_with_the_tile_that_the_last_one_came_to)
 {
     const whit_renderer_params params = {.width = 320, .height = 240};
-    struct fixture f = fixture_open(plain_scene(), NULL, &params);
+    own_fixture f = fixture_open(plain_scene(), NULL, &params);
     uint32_t usual = render_progress(f.renderer).tile;
     assert_int_equal(f.renderer->tile, 0);
     f.renderer->tile = usual + 8;
@@ -368,7 +363,6 @@ TEST(a_picture_begins_with_the_tile_that_the_last_one_came_to)
     assert_true(render_progress(f.renderer).tile <= 320);
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     assert_true(f.renderer->tile != 4096);
-    fixture_close(&f);
 }
 
 TEST(stages_are_timed_only_where_asked)
@@ -396,7 +390,7 @@ static void check_colors_alone(whit_sampling sampling)
                                    .sampling = sampling};
     own_picture all = picture_of(mixed_scene(), NULL, &params);
     params.color_only = true;
-    struct fixture f = fixture_open(mixed_scene(), NULL, &params);
+    own_fixture f = fixture_open(mixed_scene(), NULL, &params);
     struct image color = render(&f), borrowed, none;
     whit_stats stats;
     renderer_get_stats(f.renderer, &stats);
@@ -415,7 +409,6 @@ static void check_colors_alone(whit_sampling sampling)
     assert_int_equal(renderer_read_ids(f.renderer, &none), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_read_cuts(f.renderer, &none), WHIT_ERROR_USAGE);
     image_finish(&color);
-    fixture_close(&f);
 }
 
 TEST(colors_alone_are_the_same)
@@ -428,7 +421,7 @@ TEST(colors_alone_are_the_same)
 TEST(weights_of_cut_rays_are_those_of_their_pixels)
 {
     const whit_renderer_params params = {.width = 64, .height = 48, .bailout = 0.05};
-    struct fixture f = fixture_open(mixed_scene(), NULL, &params);
+    own_fixture f = fixture_open(mixed_scene(), NULL, &params);
     own_picture picture = render_picture(&f);
     own_image cuts = {0};
     size_t missed = 0, cut = 0;
@@ -441,7 +434,6 @@ TEST(weights_of_cut_rays_are_those_of_their_pixels)
         cut += has;
     }
     assert_true(missed > 0 && cut > 0);
-    fixture_close(&f);
 }
 
 /* With two segments lists are filled from both ends. The hits of camera rays are counted only after
@@ -506,13 +498,12 @@ TEST(cancel_and_time_limit_stop)
    be made for it then. */
 TEST(pictures_may_be_dropped)
 {
-    struct fixture f = fixture_open(mixed_scene(), NULL, &picture_params);
+    own_fixture f = fixture_open(mixed_scene(), NULL, &picture_params);
     own_image before = render(&f);
     scene_drop_pictures(f.scene);
     own_image after = render(&f);
     assert_same_image("dropped pictures", &before, &after);
     fixture_refuses(&f, &picture_params, 1);
-    fixture_close(&f);
 }
 
 /* The state of a queued ray holds the most steps that a depth allows, and the slots of a picture's
@@ -527,16 +518,15 @@ TEST(a_slot_has_the_bits_that_steps_leave)
             .width = 1024, .height = 1024, .depth = depth, .tile_size = 1024};
         if (depth % 85)
             continue;
-        struct fixture f = fixture_open(plain_scene(), NULL, &params);
+        own_fixture f = fixture_open(plain_scene(), NULL, &params);
         assert_int_equal(f.renderer->frame.slot_shift, shift);
         assert_true(f.renderer->picture.buffers.chunk_slots <= (UINT32_MAX >> shift) + 1);
-        fixture_close(&f);
     }
 }
 
 TEST(nonsense_is_refused)
 {
-    struct fixture f = fixture_open(plain_scene(), NULL, NULL);
+    own_fixture f = fixture_open(plain_scene(), NULL, NULL);
     const whit_renderer_params bad[] = {
         {.width = 0, .height = 4},
         {.width = 70000, .height = 4},
@@ -556,5 +546,4 @@ TEST(nonsense_is_refused)
         {.camera = {.name = "nan,0,1,0,0,0,0,1,0,40"}},
     };
     fixture_refuses(&f, bad, sizeof bad / sizeof *bad);
-    fixture_close(&f);
 }

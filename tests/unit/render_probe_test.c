@@ -222,10 +222,9 @@ TEST(rays_are_those_of_the_picture)
 {
     if (!unit_turn(0, 2))
         skip();
-    struct fixture f = fixture_open(glass_scene(), NULL, &small);
+    own_fixture f = fixture_open(glass_scene(), NULL, &small);
     struct sums sums = probe_picture(&f);
     assert_all_kinds(&sums);
-    fixture_close(&f);
 }
 
 /* ---- Surfaces that let rays pass ---- */
@@ -282,13 +281,12 @@ TEST(surfaces_let_rays_pass)
         skip();
     whit_renderer_params params = sieve_params;
     params.numerics = NUMERICS_EXACT;
-    struct fixture f = fixture_open(sieve_scene(), NULL, &params);
+    own_fixture f = fixture_open(sieve_scene(), NULL, &params);
     struct sums sums = probe_picture(&f);
     assert_true(sums.passed > 0 && sums.straight > 0);
     assert_true(sums.ends[PROBE_BLOCKED] > 0);
     assert_all_kinds(&sums);
     assert_int_equal(sums.exact_equal, sums.exact);
-    fixture_close(&f);
 }
 
 TEST(trees_do_not_matter)
@@ -302,10 +300,9 @@ TEST(trees_do_not_matter)
     for (size_t i = 0; i < sizeof trees / sizeof *trees; ++i) {
         if (!cases_turn(i, 2))
             continue;
-        struct fixture f = fixture_open(sieve_scene(), &trees[i], &params);
+        own_fixture f = fixture_open(sieve_scene(), &trees[i], &params);
         struct sums sums = probe_picture(&f);
         assert_true(sums.ends[PROBE_BLOCKED] > 0 && sums.passed > 0);
-        fixture_close(&f);
     }
 }
 
@@ -323,14 +320,13 @@ TEST(scenes_of_all_kinds)
         if (!cases_turn(i, 3))
             continue;
         whit_renderer_params params = {.width = 6, .height = 5, .depth = 6, .light_samples = 1};
-        struct fixture f = fixture_open(file_scene(scenes[i].name), NULL, &params);
+        own_fixture f = fixture_open(file_scene(scenes[i].name), NULL, &params);
         print_message("  %s\n", scenes[i].name);
         struct sums sums = probe_picture(&f);
         assert_true(sums.kinds[RAY_SHADOW] > 0 && sums.kinds[RAY_REFRACTED] > 0);
         assert_true(sums.passed > 0);
         assert_true(!scenes[i].through || sums.through > 0);
         assert_true(!scenes[i].straight || sums.straight > 0);
-        fixture_close(&f);
     }
 }
 
@@ -340,7 +336,7 @@ TEST(another_time_and_size)
     if (!unit_turn(0, 2))
         skip();
     const whit_renderer_params params = {.width = SIDE, .height = 6, .depth = 3};
-    struct fixture f = fixture_open(file_scene("spin"), NULL, &params);
+    own_fixture f = fixture_open(file_scene("spin"), NULL, &params);
     struct sums before = probe_picture(&f);
     assert_int_equal(renderer_set_time(f.renderer, 0.7), WHIT_OK);
     struct sums after = probe_picture(&f);
@@ -351,7 +347,6 @@ TEST(another_time_and_size)
     other.depth = 4;
     assert_int_equal(renderer_set_view(f.renderer, &other), WHIT_OK);
     probe_picture(&f);
-    fixture_close(&f);
 }
 
 /* ---- More samples, less room, and nothing ---- */
@@ -395,7 +390,7 @@ static uint32_t busiest_pixel(struct fixture *f, uint32_t *rays)
 
 TEST(rays_without_room_are_counted)
 {
-    struct fixture f = fixture_open(glass_scene(), NULL, &small);
+    own_fixture f = fixture_open(glass_scene(), NULL, &small);
     uint32_t all, pixel = busiest_pixel(&f, &all);
     struct probe_report whole = probe(&f, pixel % SIDE, pixel / SIDE, 0);
     assert_int_equal(whole.dropped, 0);
@@ -408,19 +403,17 @@ TEST(rays_without_room_are_counted)
         probe_report_finish(&part);
     }
     probe_report_finish(&whole);
-    fixture_close(&f);
 }
 
 TEST(pixels_outside_are_refused)
 {
-    struct fixture f = fixture_open(glass_scene(), NULL, &small);
+    own_fixture f = fixture_open(glass_scene(), NULL, &small);
     struct probe_report report;
     assert_int_equal(renderer_probe(f.renderer, SIDE, 0, 0, &report), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_probe(f.renderer, 0, SIDE, 0, &report), WHIT_ERROR_USAGE);
     assert_null(report.rays);
     report = probe(&f, SIDE - 1, SIDE - 1, 0);
     probe_report_finish(&report);
-    fixture_close(&f);
 }
 
 static struct pipeline_info kernel_of(const struct pass *pass)
@@ -435,7 +428,7 @@ static struct pipeline_info kernel_of(const struct pass *pass)
    kernels of its own, and those of pictures are the same as before. */
 TEST(pictures_know_nothing_of_it)
 {
-    struct fixture f = fixture_open(glass_scene(), NULL, &small);
+    own_fixture f = fixture_open(glass_scene(), NULL, &small);
     struct renderer *r = f.renderer;
     struct image picture = render(&f);
     image_finish(&picture);
@@ -456,5 +449,4 @@ TEST(pictures_know_nothing_of_it)
     assert_true(probe.instructions > before.instructions);
     assert_true(r->scene_buffers.bytes > bytes);
     print_message("  %u instructions, %u of a probe\n", before.instructions, probe.instructions);
-    fixture_close(&f);
 }

@@ -210,11 +210,10 @@ TEST(endless_media_are_dark)
     cube.triangle_count = kept;
     add_object(scene, cube, m, 0, 0, 0);
     const whit_renderer_params params = {.width = 1, .height = 1, .depth = 4};
-    struct fixture f = fixture_open(scene, NULL, &params);
+    own_fixture f = fixture_open(scene, NULL, &params);
     own_image image = render(&f);
     assert_true(f.renderer->frame.eye_media0 != 0);
     assert_true(image.pixels[0] == 1.0f && image.pixels[1] < 1e-37f && image.pixels[2] < 1e-37f);
-    fixture_close(&f);
 }
 
 /* ---- Both ways ---- */

@@ -46,13 +46,12 @@ static void check_same(const struct fixture *f, const char *name,
 
 static void walk(const char *name, const whit_accel_params *accel, int count)
 {
-    struct fixture f = fixture_open(file_scene(name), accel, &steps[0]);
+    own_fixture f = fixture_open(file_scene(name), accel, &steps[0]);
     for (int i = 0; i < count; ++i) {
         assert_int_equal(renderer_set_view(f.renderer, &steps[i]), WHIT_OK);
         check_same(&f, name, &steps[i]);
     }
     print_message("  %s: 0 of %d views differ\n", name, count);
-    fixture_close(&f);
 }
 
 TEST(views_are_those_of_new_renderers)
@@ -67,7 +66,7 @@ TEST_BY_TURNS(media_touch_for_cameras_far_away, 0, 2)
 {
     whit_renderer_params far_away = steps[0];
     far_away.camera = (whit_camera)CAMERA_AT(0.6, 2.35, 900, 0.42, 1.62, 0, 0, 1, 0, 0.3);
-    struct fixture f = fixture_open(file_scene("whitted"), NULL, &steps[0]);
+    own_fixture f = fixture_open(file_scene("whitted"), NULL, &steps[0]);
     assert_false(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
     assert_int_equal(renderer_set_view(f.renderer, &far_away), WHIT_OK);
     assert_true(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
@@ -75,13 +74,12 @@ TEST_BY_TURNS(media_touch_for_cameras_far_away, 0, 2)
     assert_int_equal(renderer_set_view(f.renderer, &steps[0]), WHIT_OK);
     assert_false(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
     check_same(&f, "near", &steps[0]);
-    fixture_close(&f);
 }
 
 /* A new size must keep what the kernels of ray batches are bound to. */
 TEST_BY_TURNS(rays_are_traced_in_between, 1, 2)
 {
-    struct fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
+    own_fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
     const struct gpu_ray ray = {.origin = {3, 2.5f, 4}, .dir = {-3, -2, -4}, .t_max = INFINITY};
     struct gpu_hit before = {0}, after = {0};
     assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &before, NULL), WHIT_OK);
@@ -89,12 +87,11 @@ TEST_BY_TURNS(rays_are_traced_in_between, 1, 2)
     assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &after, NULL), WHIT_OK);
     assert_memory_equal(&before, &after, sizeof before);
     assert_int_not_equal(before.primitive, HIT_NONE);
-    fixture_close(&f);
 }
 
 TEST(nonsense_is_refused)
 {
-    struct fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
+    own_fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
     whit_renderer_params wrong = steps[0];
     wrong.camera = (whit_camera){.name = "no such camera"};
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
@@ -104,7 +101,6 @@ TEST(nonsense_is_refused)
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_set_view(f.renderer, &steps[1]), WHIT_OK);
     check_same(&f, "after nonsense", &steps[1]);
-    fixture_close(&f);
 }
 
 /* Whether a renderer uses few kernels follows from the picture for which it was made, and a larger
@@ -113,7 +109,7 @@ TEST(a_larger_view_keeps_the_kernels)
 {
     const whit_renderer_params small = {.width = 20, .height = 16, .depth = 4};
     const whit_renderer_params large = {.width = 600, .height = 300, .depth = 4};
-    struct fixture f = fixture_open(file_scene("whitted"), NULL, &small);
+    own_fixture f = fixture_open(file_scene("whitted"), NULL, &small);
     assert_true(f.renderer->few_kernels && render_few_kernels(&small));
     assert_false(render_few_kernels(&large));
     own_picture before = render_picture(&f);
@@ -121,5 +117,4 @@ TEST(a_larger_view_keeps_the_kernels)
     own_picture after = render_picture(&f);
     assert_true(f.renderer->few_kernels);
     assert_int_equal(after.stats.kernel_instructions, before.stats.kernel_instructions);
-    fixture_close(&f);
 }

@@ -342,7 +342,7 @@ TEST_BY_TURNS(cut_walks_through_sheets_are_reported, 3, 4)
         set_rgb(scene->environment.ground, 0.5f, 0.5f, 0.5f);
         scene_put_sun(scene, 0, -1, 0, lit ? 0.5f : 0.0f);
         const whit_renderer_params params = {.width = 1, .height = 1, .depth = 2};
-        struct fixture f = fixture_open(scene, NULL, &params);
+        own_fixture f = fixture_open(scene, NULL, &params);
         whit_result result = renderer_render(f.renderer);
         print_message("  %s: %s\n", lit ? "light" : "eye", whit_result_name(result));
         if (device_get_limits(f.device)->loop_limited) {
@@ -353,7 +353,6 @@ TEST_BY_TURNS(cut_walks_through_sheets_are_reported, 3, 4)
             assert_int_equal(renderer_read_color(f.renderer, &image), WHIT_OK);
             assert_near(image.pixels[0], 0.5, 1e-6);
         }
-        fixture_close(&f);
     }
 }
 

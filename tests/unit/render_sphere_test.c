@@ -10,7 +10,7 @@
 static void check_twin(struct scene *scene, const whit_accel_params *params, const char *label)
 {
     enum { RAYS = 100000 };
-    struct fixture f = fixture_open(scene, params, NULL);
+    own_fixture f = fixture_open(scene, params, NULL);
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
     assert_true(rays && hits);
@@ -23,7 +23,6 @@ static void check_twin(struct scene *scene, const whit_accel_params *params, con
     assert_true(count_met(hits, RAYS) > RAYS / 4);
     free(rays);
     free(hits);
-    fixture_close(&f);
 }
 
 TEST(spheres_equal_twin)

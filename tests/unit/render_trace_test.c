@@ -46,7 +46,7 @@ static void check_any_against_closest(struct fixture *f, const char *label)
 
 static void check_scene(struct scene *scene, const char *label)
 {
-    struct fixture f = fixture_open(scene, NULL, NULL);
+    own_fixture f = fixture_open(scene, NULL, NULL);
     struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
     assert_true(rays && hits);
@@ -64,7 +64,6 @@ static void check_scene(struct scene *scene, const char *label)
     check_any_against_closest(&f, label);
     free(rays);
     free(hits);
-    fixture_close(&f);
 }
 
 static struct scene_mesh far_sphere(void)
@@ -179,7 +178,7 @@ static void check_packets(struct scene *scene, const whit_accel_params *params, 
 {
     const uint32_t many = cases_of(70000); /* the last packet is not full */
     const whit_renderer_params on = {.width = 16, .height = 16, .packets = WHIT_PACKETS_ON};
-    struct fixture f = fixture_open(scene, params, &on);
+    own_fixture f = fixture_open(scene, params, &on);
     struct gpu_ray *rays = array_alloc(many, sizeof *rays);
     struct gpu_hit *hits = array_alloc(many, sizeof *hits);
     assert_true(rays && hits);
@@ -198,7 +197,6 @@ static void check_packets(struct scene *scene, const whit_accel_params *params, 
     }
     free(rays);
     free(hits);
-    fixture_close(&f);
 }
 
 TEST(packets_equal_twin)
@@ -264,7 +262,7 @@ TEST(integers_equal_twin)
 {
     const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_EXACT};
     for (int l = 0; l < 2; ++l) {
-        struct fixture f = open_at(integer_ring(), levels[l]);
+        own_fixture f = open_at(integer_ring(), levels[l]);
         struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
         uint64_t random = 3;
         assert_non_null(rays);
@@ -272,13 +270,12 @@ TEST(integers_equal_twin)
             rays[i] = ray_along_axis(f.scene, i, &random);
         check_ends(&f, rays, RAYS);
         free(rays);
-        fixture_close(&f);
     }
 }
 
 static void check_degenerate_rays(uint32_t numerics)
 {
-    struct fixture f = open_at(scene_of(mesh_sphere(1.0, 16, 8)), numerics);
+    own_fixture f = open_at(scene_of(mesh_sphere(1.0, 16, 8)), numerics);
     const struct gpu_ray rays[] = {
         {{NAN, 0, 0}, 0, {0, 0, 1}, INFINITY},
         {{INFINITY, 0, 0}, 0, {0, 0, 1}, INFINITY},
@@ -301,7 +298,6 @@ static void check_degenerate_rays(uint32_t numerics)
         assert_int_equal(hits[i].primitive, HIT_NONE);
     print_message("  %s: 0 hits of %u degenerate rays\n", level_names[numerics],
                   (unsigned)COUNT - 1);
-    fixture_close(&f);
 }
 
 TEST(degenerate_rays_miss)
@@ -312,12 +308,11 @@ TEST(degenerate_rays_miss)
 
 TEST(empty_scene_misses)
 {
-    struct fixture f = fixture_open(scene_begin(&fixture_log, "empty"), NULL, NULL);
+    own_fixture f = fixture_open(scene_begin(&fixture_log, "empty"), NULL, NULL);
     struct gpu_ray ray = {{0, 0, 5}, 0, {0, 0, -1}, INFINITY};
     struct gpu_hit hit;
     assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit, NULL), WHIT_OK);
     assert_int_equal(hit.primitive, HIT_NONE);
-    fixture_close(&f);
 }
 
 /* Layers of slivers along one diagonal: a ray beside the diagonal meets every box and no triangle.
@@ -331,7 +326,7 @@ TEST(cut_traversals_are_reported)
         float z = (float)i * 0.001f;
         memcpy(corners[i], (float[9]){0, 0, z, 1, 1, z, 0.99f, 1, z}, sizeof corners[i]);
     }
-    struct fixture f = fixture_open(scene_of(mesh_triangles(corners[0], COUNT)), NULL, NULL);
+    own_fixture f = fixture_open(scene_of(mesh_triangles(corners[0], COUNT)), NULL, NULL);
     free(corners);
     struct gpu_ray rays[8];
     struct gpu_hit hits[8], twin;
@@ -352,5 +347,4 @@ TEST(cut_traversals_are_reported)
         assert_int_equal(result, WHIT_OK);
         assert_int_equal(hits[0].primitive, HIT_NONE);
     }
-    fixture_close(&f);
 }

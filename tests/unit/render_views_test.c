@@ -103,7 +103,7 @@ static void check_scene(const char *name, const whit_renderer_params *params, bo
                         uint32_t count)
 {
     whit_camera cameras[MANY];
-    struct fixture f = fixture_open(file_scene(name), NULL, params);
+    own_fixture f = fixture_open(file_scene(name), NULL, params);
     struct fixture single = {.device = f.device, .accel = f.accel};
     whit_renderer_params plain = *params;
     plain.packets = WHIT_PACKETS_OFF;
@@ -115,7 +115,6 @@ static void check_scene(const char *name, const whit_renderer_params *params, bo
         check_bands(&f, &single, cameras, count);
     print_message("  %s: 0 of %u views differ\n", name, count);
     renderer_destroy(single.renderer);
-    fixture_close(&f);
 }
 
 /* Sizes are no multiples of blocks, and tiles have several views and parts of views. The other
@@ -227,7 +226,7 @@ TEST(what_views_do_not_go_with_is_refused)
         {.width = 16, .height = 16, .row_count = 8},
         {.width = 16, .height = 16, .count = true},
     };
-    struct fixture f = fixture_open(file_scene("cube"), NULL, NULL);
+    own_fixture f = fixture_open(file_scene("cube"), NULL, NULL);
     assert_int_equal(renderer_render_views(f.renderer, &camera, 0), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_render_views(f.renderer, &camera, UINT32_MAX), WHIT_ERROR_USAGE);
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
@@ -241,5 +240,4 @@ TEST(what_views_do_not_go_with_is_refused)
     fixture_renew(&f, &(whit_renderer_params){.width = 16, .height = 16});
     for (size_t i = 0; i < 3; ++i)
         assert_int_equal(renderer_render_views(f.renderer, &none[i], 1), WHIT_ERROR_USAGE);
-    fixture_close(&f);
 }
