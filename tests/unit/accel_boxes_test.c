@@ -73,7 +73,7 @@ static void check_covered(const struct world *w, const struct seen *seen, uint32
 
 TEST(mesh_trees_level_by_level)
 {
-    struct world w = placed_spheres(false);
+    own_world w = placed_spheres(false);
     assert_int_equal(see(&w, false, 0, UINT32_MAX)->count, 5); /* one root for each instance */
     for (uint32_t level = 0; level < 6; ++level) {
         const struct seen *seen = see(&w, false, level, UINT32_MAX);
@@ -87,12 +87,11 @@ TEST(mesh_trees_level_by_level)
     const struct seen *leaves = see(&w, false, 127, UINT32_MAX);
     for (uint32_t i = 0; i < leaves->count; ++i)
         assert_true(leaves->boxes[i].leaf);
-    world_finish(&w);
 }
 
 TEST(instances_and_one_tree)
 {
-    struct world w = placed_spheres(false), flat = placed_spheres(true);
+    own_world w = placed_spheres(false), flat = placed_spheres(true);
     const struct seen *root = see(&w, true, 0, UINT32_MAX);
     assert_int_equal(root->count, 1);
     check_covered(&w, root, 0);
@@ -103,13 +102,10 @@ TEST(instances_and_one_tree)
     assert_int_equal(seen->count, 4);
     for (uint32_t i = 0; i < 5; ++i)
         check_covered(&flat, seen, i);
-    world_finish(&w);
-    world_finish(&flat);
 }
 
 TEST(who_asks_can_stop)
 {
-    struct world w = placed_spheres(false);
+    own_world w = placed_spheres(false);
     assert_int_equal(see(&w, false, 4, 3)->count, 3);
-    world_finish(&w);
 }

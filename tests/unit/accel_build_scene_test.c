@@ -43,7 +43,7 @@ static struct scene *mixed_scene(void)
 
 TEST(meshes_lie_side_by_side)
 {
-    struct world world = world_of(mixed_scene(), by_threads(2));
+    own_world world = world_of(mixed_scene(), by_threads(2));
     const struct scene *scene = world.scene;
     const struct accel *accel = world.accel;
     uint32_t nodes = accel->instance_node_capacity, triangles = 0;
@@ -67,12 +67,11 @@ TEST(meshes_lie_side_by_side)
     assert_int_equal(accel->triangle_count, triangles);
     assert_int_equal((uintptr_t)accel->nodes % 64, 0);
     assert_true(accel_bytes(accel) >= 32 * (uint64_t)nodes + 48 * (uint64_t)triangles);
-    world_finish(&world);
 }
 
 TEST(same_bytes_for_any_thread_count)
 {
-    struct world world = world_of(mixed_scene(), by_threads(1));
+    own_world world = world_of(mixed_scene(), by_threads(1));
     const struct accel *one = world.accel;
     for (uint32_t threads = 2; threads <= 4; threads += 2) {
         struct accel *other = accel_of(world.scene, by_threads(threads));
@@ -84,7 +83,6 @@ TEST(same_bytes_for_any_thread_count)
                             one->instance_count * sizeof *one->instances);
         accel_destroy(other);
     }
-    world_finish(&world);
 }
 
 /* The leaf of the instance tree that has `instance`. */
@@ -124,7 +122,7 @@ static void assert_posed(const struct accel *accel, const struct scene_pose *pos
 
 TEST(instances_are_boxed_wherever_they_are)
 {
-    struct world world = world_of(mixed_scene(), by_threads(1));
+    own_world world = world_of(mixed_scene(), by_threads(1));
     struct accel *accel = world.accel;
     struct scene_pose *pose = &world.pose;
     assert_posed(accel, pose);
@@ -139,12 +137,11 @@ TEST(instances_are_boxed_wherever_they_are)
     assert_posed(accel, pose);
     assert_memory_equal(&mesh_node, &accel->nodes[accel->meshes[1].first_node + 2],
                         sizeof mesh_node);
-    world_finish(&world);
 }
 
 TEST(inverse_and_forward_are_inverse)
 {
-    struct world world = world_of(mixed_scene(), by_threads(1));
+    own_world world = world_of(mixed_scene(), by_threads(1));
     const struct scene *scene = world.scene;
     const struct accel *accel = world.accel;
     for (uint32_t i = 0; i < accel->instance_count; ++i) {
@@ -165,7 +162,6 @@ TEST(inverse_and_forward_are_inverse)
         assert_int_equal(in->root, accel->meshes[in->mesh].root);
         assert_int_equal(in->shade_base, accel->meshes[in->mesh].shade_base);
     }
-    world_finish(&world);
 }
 
 TEST(one_instance_at_the_origin_is_told_apart)
@@ -176,12 +172,11 @@ TEST(one_instance_at_the_origin_is_told_apart)
     for (int k = 0; k < 3; ++k) {
         struct scene *scene = scene_begin(&silent, "test");
         scene_put(scene, mesh_sphere(1.0, 8, 8), &(struct put){.matrix = matrices[k]});
-        struct world world = world_of(scene, by_threads(1));
+        own_world world = world_of(scene, by_threads(1));
         const struct accel *accel = world.accel;
         assert_int_equal(accel->single_identity, k < 2);
         assert_int_equal(accel->instance_root, 1u << BVH_COUNT_SHIFT);
         assert_int_equal(accel->instance_depth, 0);
-        world_finish(&world);
     }
 }
 
@@ -194,7 +189,7 @@ TEST(scenes_without_anything)
             for (int i = 1; i < k; ++i)
                 scene_put_again(scene, mesh, NULL);
         }
-        struct world world = world_of(scene, by_threads(2));
+        own_world world = world_of(scene, by_threads(2));
         const struct accel *accel = world.accel;
         assert_int_equal(accel->instance_root, BVH_EMPTY_REF);
         assert_int_equal(accel->instance_node_count, 0);
@@ -204,7 +199,6 @@ TEST(scenes_without_anything)
             assert_int_equal(
                 trace_with(accel, (struct traverse_params){.order = order}, &ray, NULL).primitive,
                 HIT_NONE);
-        world_finish(&world);
     }
 }
 
@@ -215,11 +209,10 @@ TEST(many_instances_in_one_place)
     uint32_t mesh = add_sphere(scene, 4, 3);
     for (int i = 0; i < COUNT; ++i)
         scene_put_again(scene, mesh, NULL);
-    struct world world = world_of(scene, by_threads(2));
+    own_world world = world_of(scene, by_threads(2));
     const struct accel *accel = world.accel;
     assert_int_equal(accel->instance_node_count, 2 * COUNT);
     assert_true(accel->instance_depth <= 12);
-    world_finish(&world);
 }
 
 TEST(matrices_without_inverse_are_refused)
@@ -228,7 +221,7 @@ TEST(matrices_without_inverse_are_refused)
     uint32_t mesh = add_sphere(scene, 4, 3);
     scene_put_again(scene, mesh, NULL);
     scene_put_again(scene, mesh, NULL);
-    struct world world = world_of(scene, by_threads(1));
+    own_world world = world_of(scene, by_threads(1));
     struct accel *accel = world.accel;
     struct scene_pose *pose = &world.pose;
     const double bad[] = {0.0, (double)NAN, (double)INFINITY, 1e-60, 1e60};
@@ -254,7 +247,6 @@ TEST(matrices_without_inverse_are_refused)
     pose->instances[1] = affine_identity();
     pose->instances[1].m[0] = -1.0;
     assert_int_equal(accel_pose(accel, pose), WHIT_OK);
-    world_finish(&world);
 }
 
 /* ---- Moving instances ---- */
@@ -307,7 +299,7 @@ static uint32_t same_hits(const struct accel *a, const struct accel *b, uint32_t
 /* Compares each way of updating with a tree built anew, over a thousand steps. */
 TEST(moved_instances_are_hit_alike_whatever_the_tree)
 {
-    struct world fresh = world_of(moving_scene(), (whit_accel_params){0});
+    own_world fresh = world_of(moving_scene(), (whit_accel_params){0});
     struct accel *all[WAYS];
     for (size_t w = 0; w < WAYS; ++w)
         all[w] = accel_of(fresh.scene, ways[w]);
@@ -333,14 +325,13 @@ TEST(moved_instances_are_hit_alike_whatever_the_tree)
     free(kept);
     for (size_t w = 0; w < WAYS; ++w)
         accel_destroy(all[w]);
-    world_finish(&fresh);
 }
 
 /* A refitted tree keeps the topology of its first pose; a rebuilt one follows the instances. */
 TEST(only_a_rebuild_changes_the_tree)
 {
     for (size_t w = 0; w < WAYS; ++w) {
-        struct world world = world_of(moving_scene(), ways[w]);
+        own_world world = world_of(moving_scene(), ways[w]);
         struct accel *accel = world.accel;
         struct gpu_bvh_node before[2 * MOVING];
         uint32_t count = accel->instance_node_count, links = 0, boxes = 0, axes = 0;
@@ -357,7 +348,6 @@ TEST(only_a_rebuild_changes_the_tree)
         assert_true(boxes > count / 2);
         assert_true(axes > 0);
         assert_int_equal(links == 0, ways[w].instance_refit);
-        world_finish(&world);
     }
 }
 
@@ -370,7 +360,7 @@ TEST(every_instance_is_hit)
         uint32_t mesh = add_sphere(scene, 8, 6);
         for (int i = 0; i < SIDE * SIDE; ++i)
             scene_put_again(scene, mesh, NULL);
-        struct world world = world_of(scene, ways[w / 2]);
+        own_world world = world_of(scene, ways[w / 2]);
         for (int i = 0; i < SIDE * SIDE; ++i)
             world.pose.instances[i] = placed(3.0 * (w % 2 ? i / SIDE : i % SIDE),
                                              3.0 * (w % 2 ? i % SIDE : i / SIDE), 0, i, 1, 1, 1);
@@ -382,7 +372,6 @@ TEST(every_instance_is_hit)
             const struct traverse_params basic = {.order = ORDER_BASIC};
             assert_int_equal(trace_with(world.accel, basic, &ray, NULL).instance, i);
         }
-        world_finish(&world);
     }
 }
 
@@ -435,12 +424,11 @@ TEST(materials_become_bits)
             material.emission[c] = 10.0f;
         scene_put_texture(scene, 1, 1, (uint8_t[4]){0});
         scene_put(scene, mesh_sphere(1.0, 4, 3), &(struct put){.material = &material});
-        struct world world = world_of(scene, by_threads(1));
+        own_world world = world_of(scene, by_threads(1));
         const struct gpu_triangle *triangle = &world.accel->triangles[0];
         if (triangle->flags != materials[i].flags || triangle->shadow != materials[i].shadow)
             fail_msg("%s: flags %x, shadow %x", materials[i].name, triangle->flags,
                      triangle->shadow);
-        world_finish(&world);
     }
 }
 
@@ -478,10 +466,9 @@ TEST(broken_scenes_are_refused)
 {
     bool damaged = true;
     for (size_t k = 0; damaged; ++k) {
-        struct world world = world_of(mixed_scene(), by_threads(2));
+        own_world world = world_of(mixed_scene(), by_threads(2));
         damaged = damage(world.accel, k);
         if ((accel_validate(world.accel) == WHIT_OK) == damaged)
             fail_msg("case %zu was misjudged", k);
-        world_finish(&world);
     }
 }

@@ -66,7 +66,7 @@ TEST(leaves_are_those_of_two)
             struct affine placed = placement_random(&random_state, 4.0, i % 3 == 0);
             scene_put_again(scene, ring, &(struct put){.matrix = &placed});
         }
-        struct world world = world_of(
+        own_world world = world_of(
             scene, (whit_accel_params){.instances = flat ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON});
         struct accel *accel = world.accel;
         assert_int_equal(accel_pose(accel, &world.pose), WHIT_OK);
@@ -80,6 +80,5 @@ TEST(leaves_are_those_of_two)
                 check_tree(accel, accel->instance_root, accel->bvh8.instance_root,
                            accel->bvh8.instance_depth);
         }
-        world_finish(&world);
     }
 }

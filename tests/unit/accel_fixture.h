@@ -257,6 +257,9 @@ static inline void world_finish(struct world *world)
     soup_finish(&world->soup);
 }
 
+/* Freed at the end of its block. */
+#define own_world __attribute__((cleanup(world_finish))) struct world
+
 /* A scene with one material and one instance at the origin. */
 static inline struct scene *soup_scene(const struct soup *soup)
 {

@@ -86,7 +86,7 @@ static struct comparison compare(const struct accel *instanced, const struct acc
 TEST(hits_are_those_of_the_instances)
 {
     enum { RAYS = 300000 };
-    struct world instanced = mixed_world((whit_accel_params){0});
+    own_world instanced = mixed_world((whit_accel_params){0});
     struct accel *flat = accel_of(instanced.scene, flatten);
     random_state = 1;
     struct comparison c = compare(instanced.accel, flat, RAYS);
@@ -98,14 +98,13 @@ TEST(hits_are_those_of_the_instances)
     assert_true(c.t_off < 1e-4); /* t is 1 at a distance of about 10; grazing hits differ most */
     assert_true(c.cosine > 1.0 - 1e-6);
     accel_destroy(flat);
-    world_finish(&instanced);
 }
 
 TEST(builders_agree_bit_for_bit)
 {
     static const whit_build builders[] = {WHIT_BUILD_MEDIAN, WHIT_BUILD_SWEEP, WHIT_BUILD_SPATIAL,
                                           WHIT_BUILD_NONE};
-    struct world first = mixed_world(flatten);
+    own_world first = mixed_world(flatten);
     for (size_t b = 0; b < sizeof builders / sizeof *builders; ++b) {
         struct accel *accel =
             accel_of(first.scene,
@@ -123,12 +122,11 @@ TEST(builders_agree_bit_for_bit)
         }
         accel_destroy(accel);
     }
-    world_finish(&first);
 }
 
 TEST(the_oracle_agrees)
 {
-    struct world world = mixed_world(flatten);
+    own_world world = mixed_world(flatten);
     const struct accel *accel = world.accel;
     const uint32_t rays = cases_of(1500);
     uint32_t sure = 0;
@@ -150,7 +148,6 @@ TEST(the_oracle_agrees)
             assert_true(fabs((double)hit.t - tree.t) <= tree.t_error);
     }
     assert_true(sure > rays * 29 / 30);
-    world_finish(&world);
 }
 
 /* Checks that a record's vertices were placed in double and rounded once, as by `whit scene
@@ -174,7 +171,7 @@ static void assert_placed(const struct scene *scene, const struct scene_pose *po
 
 TEST(records_say_whose_they_are)
 {
-    struct world world = mixed_world(
+    own_world world = mixed_world(
         (whit_accel_params){.build = WHIT_BUILD_SWEEP, .instances = WHIT_INSTANCES_OFF});
     const struct scene *scene = world.scene;
     const struct accel *accel = world.accel;
@@ -200,12 +197,11 @@ TEST(records_say_whose_they_are)
                       (scene->instances[i].mesh > 1 ? scene->meshes[1].triangle_count : 0)
                 : 0);
     }
-    world_finish(&world);
 }
 
 TEST(a_pose_builds_anew)
 {
-    struct world world = mixed_world((whit_accel_params){0});
+    own_world world = mixed_world((whit_accel_params){0});
     struct accel *flat = accel_of(world.scene, flatten);
     struct scene_pose *pose = &world.pose;
     uint64_t seed = 11;
@@ -232,7 +228,6 @@ TEST(a_pose_builds_anew)
     after = trace(flat, &ray);
     assert_memory_equal(&before, &after, sizeof before);
     accel_destroy(flat);
-    world_finish(&world);
 }
 
 /* Changes one word, and tells whether there is a change of that number. */
@@ -260,11 +255,10 @@ TEST(broken_records_are_refused)
 {
     bool damaged = true;
     for (size_t k = 0; damaged; ++k) {
-        struct world world = mixed_world(flatten);
+        own_world world = mixed_world(flatten);
         damaged = damage(world.accel, k);
         if ((accel_validate(world.accel) == WHIT_OK) == damaged)
             fail_msg("case %zu was misjudged", k);
-        world_finish(&world);
     }
 }
 
@@ -276,13 +270,12 @@ TEST(scenes_without_anything)
             scene_put_mesh(scene, (struct scene_mesh){0});
         if (k > 1)
             scene_put_again(scene, 0, NULL);
-        struct world world = world_of(scene, flatten);
+        own_world world = world_of(scene, flatten);
         struct gpu_ray ray = random_ray();
         struct oracle_hit sure;
         oracle_trace(world.accel, &ray, false, &sure);
         assert_int_equal(trace(world.accel, &ray).primitive, HIT_NONE);
         assert_int_equal(sure.primitive, HIT_NONE);
-        world_finish(&world);
     }
 }
 

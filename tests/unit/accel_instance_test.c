@@ -63,7 +63,7 @@ enum { RAYS = 20000 };
 
 static struct errors measure(const struct affine *matrix, uint32_t numerics)
 {
-    struct world world = sphere_world(matrix, 1);
+    own_world world = sphere_world(matrix, 1);
     struct errors errors = {0};
     uint64_t state = 1;
     for (int i = 0; i < RAYS; ++i) {
@@ -89,7 +89,6 @@ static struct errors measure(const struct affine *matrix, uint32_t numerics)
         ++errors.met;
     }
     errors.t_mean /= errors.met ? errors.met : 1;
-    world_finish(&world);
     return errors;
 }
 
@@ -165,7 +164,7 @@ TEST(normals_go_by_the_inverse_transpose)
 TEST(an_identity_is_no_transform)
 {
     struct affine identity = affine_identity();
-    struct world world = sphere_world(&identity, 1);
+    own_world world = sphere_world(&identity, 1);
     uint64_t random = 3;
     uint32_t met = 0;
     for (int i = 0; i < 2 * RAYS; ++i) {
@@ -184,7 +183,6 @@ TEST(an_identity_is_no_transform)
     }
     print_message("  I9 0 of %u rays differ, %u hit\n", 2 * RAYS, met);
     assert_true(met > RAYS);
-    world_finish(&world);
 }
 
 /* Checks the hit among instances in one place, at every traversal order, and that all of them were
@@ -222,7 +220,7 @@ TEST(instances_in_one_place_are_all_entered)
     assert_non_null(matrices);
     for (uint32_t i = 0; i < count; ++i)
         matrices[i] = affine_identity();
-    struct world world = sphere_world(matrices, count);
+    own_world world = sphere_world(matrices, count);
     const struct accel *accel = world.accel;
     /* The instance tree halves its instances at each level; 1 more for the mesh tree below. */
     assert_int_equal(accel->instance_node_count, 2 * count);
@@ -230,6 +228,5 @@ TEST(instances_in_one_place_are_all_entered)
     const uint32_t rays = count > 100000 ? 6 : 21;
     assert_all_are_entered(accel, count, NUMERICS_WATERTIGHT, rays);
     assert_all_are_entered(accel, count, NUMERICS_EXACT, rays);
-    world_finish(&world);
     free(matrices);
 }

@@ -22,7 +22,7 @@ static struct scene *ring_scene(void)
 TEST(trees_find_the_nearest)
 {
     random_state = 3;
-    struct world world = world_of(ring_scene(), (whit_accel_params){.build = WHIT_BUILD_NONE});
+    own_world world = world_of(ring_scene(), (whit_accel_params){.build = WHIT_BUILD_NONE});
     struct accel *tree = accel_of(world.scene, (whit_accel_params){0}),
                  *flat =
                      accel_of(world.scene, (whit_accel_params){.instances = WHIT_INSTANCES_OFF});
@@ -37,15 +37,13 @@ TEST(trees_find_the_nearest)
     }
     accel_destroy(tree);
     accel_destroy(flat);
-    world_finish(&world);
 }
 
 /* Distances to faces, edges and corners of a box. */
 TEST(distances_are_those_of_a_box)
 {
     random_state = 5;
-    struct world world =
-        world_of_soup(soup_of_mesh("box", mesh_box(2, 2, 2)), (whit_accel_params){0});
+    own_world world = world_of_soup(soup_of_mesh("box", mesh_box(2, 2, 2)), (whit_accel_params){0});
     for (int n = 0; n < 300; ++n) {
         double p[3], outside = 0.0, inside = INFINITY;
         for (int k = 0; k < 3; ++k) {
@@ -56,5 +54,4 @@ TEST(distances_are_those_of_a_box)
         double expected = outside > 0.0 ? sqrt(outside) : inside;
         assert_true(fabs(accel_distance(world.accel, &world.pose, p) - expected) < 1e-12);
     }
-    world_finish(&world);
 }

@@ -159,7 +159,7 @@ TEST(margins_explain_the_float_twin)
 {
     for (size_t r = 0; r < sizeof scenes / sizeof *scenes; ++r) {
         random_state = 3;
-        struct world world =
+        own_world world =
             scenes[r].make
                 ? scenes[r].make()
                 : world_of(sphere_scene(&silent,
@@ -183,7 +183,6 @@ TEST(margins_explain_the_float_twin)
             tally.doubtful > scenes[r].doubtful_max * tally.rays || tally.differ > tally.doubtful ||
             (scenes[r].aimed && tally.differ == 0))
             fail_msg("%s", scenes[r].name);
-        world_finish(&world);
     }
 }
 
@@ -210,7 +209,7 @@ TEST(one_triangle_is_known)
     };
     struct scene *scene = scene_begin(&silent, "test");
     scene_put(scene, mesh_triangles(unit_triangle, 1), NULL);
-    struct world world = world_of(scene, (whit_accel_params){0});
+    own_world world = world_of(scene, (whit_accel_params){0});
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
         const struct gpu_ray ray = {
             {rows[i].x, 0.5f, 4.0f}, rows[i].t_min, {0, 0, -2}, rows[i].t_max};
@@ -225,7 +224,6 @@ TEST(one_triangle_is_known)
         if (!right)
             fail_msg("%s: t %g, margin %g", rows[i].name, hit.t, hit.edge_margin);
     }
-    world_finish(&world);
 }
 
 TEST(ties_go_to_the_smaller_index)
@@ -236,7 +234,7 @@ TEST(ties_go_to_the_smaller_index)
     struct scene *scene = scene_begin(&silent, "test");
     scene_put(scene, mesh_triangles(corners, 3), NULL);
     scene_put(scene, mesh_triangles(corners, 3), NULL);
-    struct world world = world_of(scene, (whit_accel_params){0});
+    own_world world = world_of(scene, (whit_accel_params){0});
     struct gpu_ray ray = {{0.25f, 0.25f, 1.0f}, 0.0f, {0, 0, -1}, INFINITY};
     for (int brute = 0; brute < 2; ++brute) {
         struct oracle_hit hit;
@@ -246,7 +244,6 @@ TEST(ties_go_to_the_smaller_index)
         assert_true(hit.second_t == hit.t);
         assert_true(hit.edge_margin == 0.0);
     }
-    world_finish(&world);
 }
 
 /* Rays along each axis, from both sides and with components 0 and -0, hit a square across that axis
@@ -266,7 +263,7 @@ TEST(borders_are_met_along_the_axes)
         }
         struct scene *scene = scene_begin(&silent, "test");
         scene_put(scene, mesh_triangles(corners, 2), NULL);
-        struct world world = world_of(scene, (whit_accel_params){0});
+        own_world world = world_of(scene, (whit_accel_params){0});
         for (uint32_t way = 0; way < 9 * 8; ++way) {
             struct gpu_ray ray = {.t_max = INFINITY};
             float side = way & 1 ? 1.0f : -1.0f;
@@ -279,7 +276,6 @@ TEST(borders_are_met_along_the_axes)
             missed += trace(world.accel, &ray).t != 4.0f;
             ++rays;
         }
-        world_finish(&world);
     }
     print_message("  %u of %u rays miss\n", missed, rays);
     assert_int_equal(missed, 0);
@@ -287,7 +283,7 @@ TEST(borders_are_met_along_the_axes)
 
 TEST(senseless_rays_hit_nothing)
 {
-    struct world world = sphere_world();
+    own_world world = sphere_world();
     const struct gpu_ray rays[] = {
         {{0, 0, 0}, 0, {0, 0, 0}, INFINITY},         {{NAN, 0, 0}, 0, {0, 0, 1}, INFINITY},
         {{0, 0, 0}, 0, {0, INFINITY, 1}, INFINITY},  {{0, 0, 0}, 2, {0, 0, 1}, 1},
@@ -299,5 +295,4 @@ TEST(senseless_rays_hit_nothing)
         assert_int_equal(hit.primitive, HIT_NONE);
         assert_tree_is_brute(&world, &rays[i]);
     }
-    world_finish(&world);
 }

@@ -279,7 +279,7 @@ typedef struct gpu_ray (*ray_fn)(const struct accel *accel, uint32_t index, floa
 static uint32_t compare_scene(const char *name, struct scene *scene, whit_accel_params params,
                               ray_fn make, uint32_t rays, float spread)
 {
-    struct world world = world_of(scene, params);
+    own_world world = world_of(scene, params);
     struct rational *rational = rational_create(world.accel);
     struct tally tally = {0};
     bool apart = scene->sphere_total > 0;
@@ -301,7 +301,6 @@ static uint32_t compare_scene(const char *name, struct scene *scene, whit_accel_
     if (tally.wrong > 0 || tally.hits <= rays / 3)
         fail_msg("%s", name);
     rational_destroy(rational);
-    world_finish(&world);
     return tally.on_edges;
 }
 
@@ -371,7 +370,7 @@ TEST(spheres_are_found_by_trees_and_without)
 /* The filter decides nearly all triangles of random rays, while aimed rays need integers. */
 TEST(integers_are_for_hard_cases)
 {
-    struct world world = world_of_soup(soup_sphere(24, 12), (whit_accel_params){0});
+    own_world world = world_of_soup(soup_sphere(24, 12), (whit_accel_params){0});
     struct rational *random = rational_create(world.accel), *aimed = rational_create(world.accel);
     random_state = 5;
     for (uint32_t i = 0; i < 20000; ++i) {
@@ -391,7 +390,6 @@ TEST(integers_are_for_hard_cases)
     assert_true(hard.exact > 1000);
     rational_destroy(random);
     rational_destroy(aimed);
-    world_finish(&world);
 }
 
 static struct world world_of_ball(void)
@@ -405,7 +403,7 @@ static struct world world_of_ball(void)
    those that touch the sphere. */
 TEST(doubles_leave_out_what_misses)
 {
-    struct world world = world_of_ball();
+    own_world world = world_of_ball();
     struct accel *accel = world.accel;
     struct rational *rational = rational_create(accel);
     uint32_t hits = 0, touched = 0;
@@ -433,7 +431,6 @@ TEST(doubles_leave_out_what_misses)
     assert_true(work.primitives > work.exact + 1000 && work.exact < hits + 10);
     assert_int_equal(touched, 20000);
     rational_destroy(rational);
-    world_finish(&world);
 }
 
 /* The least radius with which the line meets a sphere at `center`, by bisection over the bits of
@@ -461,7 +458,7 @@ static float min_radius(struct rational *rational, struct vec3 origin, struct ve
 TEST(doubles_leave_out_nothing_that_is_hit)
 {
     enum { RAYS = 10000 };
-    struct world world = world_of_ball();
+    own_world world = world_of_ball();
     struct accel *accel = world.accel;
     for (uint32_t i = 0; i < accel->node_count; ++i) { /* so that boxes exclude no ray */
         vec3_store(accel->nodes[i].lo, vec3_make(-FLT_MAX, -FLT_MAX, -FLT_MAX));
@@ -494,12 +491,11 @@ TEST(doubles_leave_out_nothing_that_is_hit)
     assert_true(asked > RAYS / 2);
     assert_int_equal(missed + met, 0);
     rational_destroy(rational);
-    world_finish(&world);
 }
 
 TEST(senseless_rays_hit_nothing)
 {
-    struct world world = world_of_soup(soup_sphere(24, 12), (whit_accel_params){0});
+    own_world world = world_of_soup(soup_sphere(24, 12), (whit_accel_params){0});
     struct rational *rational = rational_create(world.accel);
     const struct gpu_ray rays[] = {
         {{0, 0, 0}, 0, {0, 0, 0}, INFINITY},         {{NAN, 0, 0}, 0, {0, 0, 1}, INFINITY},
@@ -517,5 +513,4 @@ TEST(senseless_rays_hit_nothing)
             assert_true(hit.primitive == HIT_NONE && hit.t == INFINITY);
     }
     rational_destroy(rational);
-    world_finish(&world);
 }

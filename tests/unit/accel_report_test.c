@@ -133,13 +133,12 @@ TEST(overlap_is_that_of_brute_force)
     static const uint32_t counts[] = {1, 2, 3, 40, 300};
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; ++i) {
         for (size_t k = 0; k < BUILD_COUNT; ++k) {
-            struct world world = world_of_soup(soup_crossing(counts[i], 7 + i), builds[k]);
+            own_world world = world_of_soup(soup_crossing(counts[i], 7 + i), builds[k]);
             struct bvh_epo epo;
             assert_int_equal(accel_mesh_epo(world.accel, 0, &epo), WHIT_OK);
             double brute = brute_overlap(world.accel, &world.scene->meshes[0]);
             assert_true(counts[i] < 40 || brute > 0.0);
             assert_near(epo.overlap, brute, 1e-10 * (1.0 + brute));
-            world_finish(&world);
         }
     }
 }
@@ -151,7 +150,7 @@ TEST(overlap_is_that_of_brute_force)
 TEST(overlap_by_hand)
 {
     static const float v[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 1, 2, 0, 3, 0, 0, 3, 2, 0};
-    struct world world =
+    own_world world =
         world_of_soup(soup_of_mesh("two", mesh_triangles(v, 2)),
                       (whit_accel_params){.build = WHIT_BUILD_MEDIAN, .leaf_limit = 1});
     struct bvh_epo epo;
@@ -169,7 +168,6 @@ TEST(overlap_by_hand)
     assert_int_equal(report.measured_rays, 0);
     assert_int_equal(report.leaves_at_depth[1], 2);
     assert_int_equal(report.leaves_of_size[1], 2);
-    world_finish(&world);
 }
 
 /* ---- Shape ---- */
@@ -177,7 +175,7 @@ TEST(overlap_by_hand)
 TEST(report_agrees_with_the_tree)
 {
     for (size_t i = 0; i < BUILD_COUNT; ++i) {
-        struct world world = world_of_soup(soup_sphere(60, 60), builds[i]);
+        own_world world = world_of_soup(soup_sphere(60, 60), builds[i]);
         const struct accel *accel = world.accel;
         whit_accel_report report = report_of(&world, 0);
         uint64_t leaves = 0, triangles = 0, deepest = 0, at_depth = 0;
@@ -194,7 +192,6 @@ TEST(report_agrees_with_the_tree)
         assert_int_equal(2 * leaves, accel->meshes[0].node_count); /* pairs, and the unused node */
         assert_int_equal(deepest, accel->mesh_depth);
         assert_near(report.sah_cost, accel->meshes[0].sah_cost, 1e-5 * accel->meshes[0].sah_cost);
-        world_finish(&world);
     }
 }
 
@@ -202,10 +199,9 @@ TEST(threads_change_nothing)
 {
     whit_accel_report reports[2];
     for (uint32_t i = 0; i < 2; ++i) {
-        struct world world =
+        own_world world =
             world_of_soup(soup_crossing(3000, 3), (whit_accel_params){.threads = i ? 5 : 1});
         reports[i] = report_of(&world, 5000);
-        world_finish(&world);
     }
     assert_memory_equal(&reports[0], &reports[1], sizeof reports[0]);
 }
@@ -234,13 +230,12 @@ static struct soup soup_apart(uint32_t side, double size)
 TEST(nothing_hit_is_visited_as_predicted)
 {
     for (size_t i = 0; i < BUILD_COUNT; ++i) {
-        struct world world = world_of_soup(soup_apart(12, 0.6), builds[i]);
+        own_world world = world_of_soup(soup_apart(12, 0.6), builds[i]);
         whit_accel_report report = report_of(&world, 40000);
         assert_int_equal(world.scene->triangle_total, 12 * 12 * 12);
         assert_int_equal(report.measured_rays, 40000);
         assert_near(report.measured_inner_nodes / report.predicted_inner_nodes, 1.0, 0.02);
         assert_near(report.measured_triangles / report.predicted_triangles, 1.0, 0.02);
-        world_finish(&world);
     }
 }
 
@@ -248,11 +243,10 @@ TEST(nothing_hit_is_visited_as_predicted)
    areas. */
 TEST(hits_save_visits)
 {
-    struct world world = world_of_soup(soup_sphere(80, 80), builds[0]);
+    own_world world = world_of_soup(soup_sphere(80, 80), builds[0]);
     whit_accel_report report = report_of(&world, 20000);
     assert_true(report.measured_inner_nodes < 0.9 * report.predicted_inner_nodes);
     assert_true(report.measured_inner_nodes > 0.3 * report.predicted_inner_nodes);
-    world_finish(&world);
 }
 
 /* A mesh counts once, whatever the number of its instances, and by the area of its box. */
@@ -270,7 +264,7 @@ TEST(meshes_are_weighed_by_area)
             scene_put_again(scene, i, &(struct put){.matrix = &matrix});
         }
     }
-    struct world world = world_of(scene, builds[0]);
+    own_world world = world_of(scene, builds[0]);
     const struct accel *accel = world.accel;
     whit_accel_report report = report_of(&world, 20000);
     assert_true(accel->mesh_count >= 3); /* the one without triangles may be gone */
@@ -292,16 +286,14 @@ TEST(meshes_are_weighed_by_area)
     assert_near(report.sah_cost, cost / area, 1e-5 * cost / area);
     assert_true(report.measured_inner_nodes > 0.3 * report.predicted_inner_nodes);
     assert_true(report.measured_inner_nodes < report.predicted_inner_nodes);
-    world_finish(&world);
 }
 
 TEST(nothing_has_a_report)
 {
-    struct world world = world_of_soup(soup_make("nothing", 0), builds[0]);
+    own_world world = world_of_soup(soup_make("nothing", 0), builds[0]);
     whit_accel_report report;
     memset(&report, 1, sizeof report);
     assert_int_equal(accel_report(world.accel, 20000, &report), WHIT_OK);
     assert_near(report.sah_cost, 0.0, 0.0);
     assert_int_equal(report.measured_rays, 0);
-    world_finish(&world);
 }

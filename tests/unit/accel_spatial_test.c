@@ -211,7 +211,7 @@ TEST(hits_are_the_same)
     random_state = 10;
     struct soup soups[] = {soup_rooms(1500), soup_hair(2500, 1e-3f), soup_hair(1500, 0.05f)};
     for (size_t s = 0; s < sizeof soups / sizeof *soups; ++s) {
-        struct world plain = world_of_soup(soups[s], (whit_accel_params){0});
+        own_world plain = world_of_soup(soups[s], (whit_accel_params){0});
         struct accel *split = accel_of(
             plain.scene,
             (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .leaf_limit = 1, .spatial_budget = 4});
@@ -224,7 +224,6 @@ TEST(hits_are_the_same)
         }
         assert_true(found > rays / 2);
         accel_destroy(split);
-        world_finish(&plain);
     }
 }
 
@@ -232,7 +231,7 @@ TEST(hits_are_the_same)
 TEST(lost_parts_are_noticed)
 {
     random_state = 12;
-    struct world world = world_of_soup(
+    own_world world = world_of_soup(
         soup_rooms(300),
         (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .leaf_limit = 1, .spatial_budget = 3});
     struct accel *accel = world.accel;
@@ -255,7 +254,6 @@ TEST(lost_parts_are_noticed)
         memcpy(pair, kept, sizeof kept);
     }
     assert_true(refused > 50 && by_points > 10);
-    world_finish(&world);
 }
 
 /* Shadow rays add up filters record by record: each must be there once. */
@@ -269,7 +267,7 @@ TEST(filters_are_met_once)
     uint32_t index = scene_put_material(scene, glass);
     for (uint32_t i = 0; i < scene->meshes[0].triangle_count; ++i)
         scene->meshes[0].materials[i] = i / 2 % 3 == 0 ? index : 0;
-    struct world world = world_of(scene, (whit_accel_params){.build = WHIT_BUILD_SPATIAL});
+    own_world world = world_of(scene, (whit_accel_params){.build = WHIT_BUILD_SPATIAL});
     const struct accel *accel = world.accel;
     assert_true(accel->clipped && accel->record_count > accel->triangle_count);
     uint32_t *times = calloc(accel->triangle_count, sizeof *times), filters = 0;
@@ -283,6 +281,5 @@ TEST(filters_are_met_once)
     }
     assert_true(filters >= accel->triangle_count / 3);
     free(times);
-    world_finish(&world);
     soup_finish(&soup);
 }

@@ -70,7 +70,7 @@ static void check_own(const char *label, double at, double radius)
     const uint32_t rays = cases_of(100000);
     struct own own = {0};
     const double sphere[4] = {at, -0.5 * at, 0.25 * at, radius};
-    struct world world =
+    own_world world =
         world_of(sphere_scene(&silent, mesh_balls(sphere, 1), false), (whit_accel_params){0});
     for (uint32_t i = 0; i < rays; ++i)
         leave(world.accel, world.scene->meshes[0].spheres, 0, (int)(i % 3) - 1, &own);
@@ -79,7 +79,6 @@ static void check_own(const char *label, double at, double radius)
     assert_int_equal(own.wrong, 0);
     assert_true(own.worst <= 1.0);
     assert_true(own.met > rays / 3 && own.missed > rays / 3);
-    world_finish(&world);
 }
 
 TEST(rays_leave_their_sphere)

@@ -262,7 +262,7 @@ TEST(signs_of_zeros_do_not_matter)
 TEST(signs_of_zeros_do_not_matter_in_trees)
 {
     enum { RAYS = 6000 };
-    struct world world = world_of_soup(soup_rooms(200), (whit_accel_params){.leaf_limit = 1});
+    own_world world = world_of_soup(soup_rooms(200), (whit_accel_params){.leaf_limit = 1});
     const struct accel *accel = world.accel;
     for (int l = 0; l < LEVELS; ++l) {
         uint32_t differ = 0, hits = 0;
@@ -288,7 +288,6 @@ TEST(signs_of_zeros_do_not_matter_in_trees)
         assert_int_equal(differ, 0);
         assert_true(hits > RAYS / 4);
     }
-    world_finish(&world);
 }
 
 /* B6: a direction scaled by a power of two has t scaled by its inverse, exactly. */
@@ -472,7 +471,7 @@ static void try_ends(const struct level *level, const struct accel *accel, uint3
 TEST(hits_at_the_entry_of_their_box_count)
 {
     enum { RAYS = 12000 };
-    struct world world = world_of_soup(soup_rooms(200), (whit_accel_params){.leaf_limit = 1});
+    own_world world = world_of_soup(soup_rooms(200), (whit_accel_params){.leaf_limit = 1});
     const struct accel *accel = world.accel;
     struct rational *rational = rational_create(accel);
     for (int l = 0; l < LEVELS; ++l) {
@@ -497,7 +496,6 @@ TEST(hits_at_the_entry_of_their_box_count)
         assert_true(ends.starts > RAYS / 8); /* not all at `watertight`: not promised */
     }
     rational_destroy(rational);
-    world_finish(&world);
 }
 
 /* Makes a valid ray invalid in the way `what`. */
@@ -523,7 +521,7 @@ static struct gpu_ray spoiled(struct gpu_ray ray, uint32_t what, uint32_t axis)
    valid rays visit many. */
 TEST(senseless_rays_cost_nothing)
 {
-    struct world world = world_of_soup(soup_sphere(40, 20), (whit_accel_params){0});
+    own_world world = world_of_soup(soup_sphere(40, 20), (whit_accel_params){0});
     const struct accel *accel = world.accel;
     for (int l = 0; l < LEVELS; ++l) {
         uint32_t rays = 0, hits = 0, max = 0, min = UINT32_MAX;
@@ -548,5 +546,4 @@ TEST(senseless_rays_cost_nothing)
         assert_int_equal(hits, 0);
         assert_true(max <= 1 && min > 1);
     }
-    world_finish(&world);
 }

@@ -223,7 +223,7 @@ static void cross_mesh(const struct level *level, const struct soup *soup,
 
 static void assert_crossings(struct soup made, int64_t step, bool block)
 {
-    struct world world = world_of_soup(made, (whit_accel_params){0});
+    own_world world = world_of_soup(made, (whit_accel_params){0});
     const struct soup *soup = &world.soup;
     assert_int_equal(world.scene->triangle_total,
                      soup->count); /* none without area: closed still */
@@ -241,7 +241,6 @@ static void assert_crossings(struct soup made, int64_t step, bool block)
             assert_true(tally.rays > 1000 && tally.exact > tally.rays / 2);
             assert_true(tally.on_edges > tally.rays / 10);
         }
-    world_finish(&world);
 }
 
 TEST(landscapes_are_crossed_in_pairs)

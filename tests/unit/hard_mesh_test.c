@@ -209,7 +209,7 @@ TEST(no_ray_gets_through)
 {
     uint64_t contracted_leaks = 0;
     for (size_t h = 0; h < sizeof hunts / sizeof *hunts; ++h) {
-        struct world world = world_of_hunt(&hunts[h]);
+        own_world world = world_of_hunt(&hunts[h]);
         struct rational *rational = rational_create(world.accel);
         for (int l = 0; l < LEVELS; ++l) {
             struct tally tally = {0};
@@ -224,7 +224,6 @@ TEST(no_ray_gets_through)
             contracted_leaks += tally.contracted_leaks;
         }
         rational_destroy(rational);
-        world_finish(&world);
     }
     assert_true(contracted_leaks > 0 || !has_contracted());
 }
@@ -279,7 +278,7 @@ static void count_crossings(const struct level *level, const struct accel *accel
 TEST(crossings_are_odd)
 {
     const uint32_t rays = cases_of(RAYS / 3);
-    struct world world =
+    own_world world =
         world_of_soup(soup_of_mesh("torus", mesh_torus(1.0, 0.4, 48, 24)), (whit_accel_params){0});
     struct rational *rational = rational_create(world.accel);
     for (int l = 0; l < LEVELS; ++l) {
@@ -299,7 +298,6 @@ TEST(crossings_are_odd)
         assert_true(!levels[l].exact || parity.other == 0);
     }
     rational_destroy(rational);
-    world_finish(&world);
 }
 
 /* W6: at a T-junction a vertex lies beside the edge of a larger triangle, by rounding, so there is
@@ -314,7 +312,7 @@ TEST(only_t_junctions_leak)
     soup_set(&soup, 0, a, b, c);
     soup_set(&soup, 1, a, middle, d);
     soup_set(&soup, 2, middle, c, d);
-    struct world world = world_of_soup(soup, (whit_accel_params){0});
+    own_world world = world_of_soup(soup, (whit_accel_params){0});
     struct rational *rational = rational_create(world.accel);
     for (int l = 0; l < LEVELS; ++l) {
         struct tally seam = {0}, sound = {0};
@@ -338,7 +336,6 @@ TEST(only_t_junctions_leak)
         assert_int_equal(sound.exact_leaks, 0);
     }
     rational_destroy(rational);
-    world_finish(&world);
 }
 
 /* W9: two instances are halves of a floor, side by side. The ray is rounded separately in each
@@ -357,7 +354,7 @@ TEST(edges_between_instances_are_counted)
     uint32_t mesh = scene_put_mesh(scene, mesh_triangles(soup.positions, soup.count));
     for (int i = 0; i < 2; ++i)
         scene_put_again(scene, mesh, &(struct put){.matrix = &places[i]});
-    struct world world = world_of(scene, (whit_accel_params){0});
+    own_world world = world_of(scene, (whit_accel_params){0});
     world.soup = soup;
     struct rational *rational = rational_create(world.accel);
     for (int l = 0; l < LEVELS; ++l) {
@@ -376,5 +373,4 @@ TEST(edges_between_instances_are_counted)
         tell(&levels[l], "W9 edge between two instances", &tally);
     }
     rational_destroy(rational);
-    world_finish(&world);
 }

@@ -178,7 +178,7 @@ TEST(the_first_of_equal_triangles_is_hit)
     const uint32_t counts[] = {2, 3, 10, 100, 1000};
     uint32_t rays[LEVELS] = {0}, others[LEVELS] = {0};
     for (size_t n = 0; n < sizeof counts / sizeof *counts * TREES; ++n) {
-        struct world world = world_of_soup(soup_equal(counts[n / TREES]), trees[n % TREES]);
+        own_world world = world_of_soup(soup_equal(counts[n / TREES]), trees[n % TREES]);
         for (int l = 0; l < LEVELS; ++l)
             for (uint32_t i = 0; i < 24 * ORDERS; ++i) {
                 struct gpu_ray ray = ray_at_equal(i % 24);
@@ -187,7 +187,6 @@ TEST(the_first_of_equal_triangles_is_hit)
                 others[l] += hit.primitive != 0 || fabsf(hit.t - 1.0f) > FLT_EPSILON ||
                              (levels[l].exact && hit.t != 1.0f);
             }
-        world_finish(&world);
     }
     for (int l = 0; l < LEVELS; ++l) {
         print_message("%-10s R2 %u of %u rays at equal triangles hit another than the first\n",
@@ -203,7 +202,7 @@ TEST(equal_triangles_are_shared_out)
     for (uint32_t t = 0; t < TREES; ++t) {
         if (trees[t].spatial_budget > 0.0f || trees[t].build == WHIT_BUILD_NONE)
             continue; /* more than one record a triangle; no tree */
-        struct world world = world_of_soup(soup_equal(count), trees[t]);
+        own_world world = world_of_soup(soup_equal(count), trees[t]);
         const struct accel *accel = world.accel;
         uint32_t limit = trees[t].leaf_limit ? trees[t].leaf_limit : 4, largest = 0, held = 0;
         for (uint32_t n = 0; n < accel->meshes[0].node_count; ++n) {
@@ -216,7 +215,6 @@ TEST(equal_triangles_are_shared_out)
         assert_true(largest >= 1 && largest <= limit);
         assert_int_equal(held, count);
         assert_true(accel->meshes[0].depth <= 2 + (uint32_t)log2(count));
-        world_finish(&world);
     }
 }
 
@@ -273,7 +271,7 @@ TEST(any_bits_have_trees)
     uint64_t rays = 0, hits = 0, differ = 0, kept = 0, usable = 0;
     random_state = 7;
     for (uint32_t s = 0; s < scenes; ++s) {
-        struct world world = world_of(scene_of_bits(20, &usable), trees[s % TREES]);
+        own_world world = world_of(scene_of_bits(20, &usable), trees[s % TREES]);
         const struct scene *scene = world.scene;
         kept += scene->triangle_total;
         for (uint32_t m = 0; m < scene->mesh_count; ++m)
@@ -287,7 +285,6 @@ TEST(any_bits_have_trees)
             hits += wanted.primitive != HIT_NONE;
             differ += !hits_equal(&hit, &wanted);
         }
-        world_finish(&world);
     }
     print_message(
         "U7 %u scenes of any bits, %llu of %llu triangles kept: %llu of %llu rays differ by tree, "

@@ -259,7 +259,7 @@ TEST(keys_end_with_the_floats)
 TEST(ends_of_intervals_count)
 {
     enum { RAYS = 5000 };
-    struct world world = world_of_soup(soup_terrain(12), (whit_accel_params){0});
+    own_world world = world_of_soup(soup_terrain(12), (whit_accel_params){0});
     const struct accel *accel = world.accel;
     for (int l = 0; l < LEVELS; ++l) {
         uint32_t wrong_end = 0, wrong_begin = 0, hits = 0;
@@ -292,7 +292,6 @@ TEST(ends_of_intervals_count)
         assert_true(wrong_begin * 20 < hits);
         assert_true(hits > RAYS / 2);
     }
-    world_finish(&world);
 }
 
 /* T7: scenes scaled by powers of two from 1e-15 (rays at edges, whose products are smaller: 1e-11)
