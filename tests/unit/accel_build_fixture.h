@@ -45,6 +45,9 @@ static inline void soup_shuffle(struct soup *soup)
 
 /* ---- Builds ---- */
 
+/* Freed at the end of its block. */
+#define own_bvh __attribute__((cleanup(bvh_finish))) struct bvh
+
 static inline struct bvh soup_build(const struct soup *soup, whit_accel_params params)
 {
     struct bvh bvh;
@@ -254,7 +257,7 @@ static inline const char *find_optimizing_fault(const struct soup *soup, whit_ac
 {
     const char *fault = NULL;
     params.optimize = false;
-    struct bvh plain = soup_build(soup, params);
+    own_bvh plain = soup_build(soup, params);
     if (better->sah_cost > plain.sah_cost)
         fault = "optimizing made it worse";
     else if (better->leaf_count != plain.leaf_count ||
@@ -265,7 +268,6 @@ static inline const char *find_optimizing_fault(const struct soup *soup, whit_ac
     else if (better->sah_cost == plain.sah_cost &&
              !(trees_equal(better, &plain) && orders_equal(better, &plain)))
         fault = "optimizing changed the tree for nothing";
-    bvh_finish(&plain);
     return fault;
 }
 
@@ -301,14 +303,13 @@ static inline void check_all(struct soup soup)
 {
     for (size_t i = 0; i < EVERY_BUILDER; ++i) {
         const whit_accel_params *params = &every_builder[i];
-        struct bvh bvh = soup_build(&soup, *params);
+        own_bvh bvh = soup_build(&soup, *params);
         const char *fault = find_fault(&soup, params, &bvh);
         if (!fault && params->optimize)
             fault = find_optimizing_fault(&soup, *params, &bvh);
         if (fault)
             fail_msg("%s, %u triangles, row %zu of every_builder: %s", soup.name, soup.count, i,
                      fault);
-        bvh_finish(&bvh);
     }
     soup_finish(&soup);
 }

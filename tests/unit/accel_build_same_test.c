@@ -39,20 +39,18 @@ TEST(same_bytes_for_any_thread_count)
                     (params.optimize && i % SOUPS > 2)))
             continue;
         params.threads = 1;
-        struct bvh one = soup_build(soup, params);
+        own_bvh one = soup_build(soup, params);
         uint64_t hash = hash_bytes(HASH_START, one.nodes, one.node_count * sizeof *one.nodes);
         hash = hash_bytes(hash, one.order, one.reference_count * sizeof *one.order);
         print_message("  row %2zu of every_builder, %-9s %u nodes %016llx\n", i / SOUPS, soup->name,
                       one.node_count, (unsigned long long)hash);
         for (params.threads = 2; params.threads <= 5;
              params.threads += few || !cases_times() ? 2 : 1) {
-            struct bvh other = soup_build(soup, params);
+            own_bvh other = soup_build(soup, params);
             if (!trees_equal(&one, &other) || !orders_equal(&one, &other))
                 fail_msg("%s, row %zu of every_builder: another tree by %u threads", soup->name,
                          i / SOUPS, params.threads);
-            bvh_finish(&other);
         }
-        bvh_finish(&one);
     }
     for (size_t i = 0; i < SOUPS; ++i)
         soup_finish(&soups[i]);
@@ -75,13 +73,11 @@ TEST(same_tree_for_any_order)
         struct soup *soup = &soups[i % 3];
         if (i % 3 != 2 && params[i / 3].build == WHIT_BUILD_SPATIAL)
             continue; /* spatial splits round the boxes of parts */
-        struct bvh first = soup_build(soup, params[i / 3]);
+        own_bvh first = soup_build(soup, params[i / 3]);
         soup_shuffle(soup);
-        struct bvh second = soup_build(soup, params[i / 3]);
+        own_bvh second = soup_build(soup, params[i / 3]);
         if (!trees_equal(&first, &second))
             fail_msg("%s, row %zu of params: another tree in another order", soup->name, i / 3);
-        bvh_finish(&first);
-        bvh_finish(&second);
     }
     for (size_t i = 0; i < 3; ++i)
         soup_finish(&soups[i]);
@@ -169,17 +165,15 @@ TEST(sweep_finds_the_splits_of_the_quadratic_search)
     for (size_t i = 0; i < 2 * sizeof counts / sizeof *counts; ++i) {
         random_state = 100 + i;
         uint32_t count = counts[i / 2];
-        struct soup soup = soup_scattered(count, count > 500 && i % 2 == 0 ? 0.03f : 0.3f);
+        own_soup soup = soup_scattered(count, count > 500 && i % 2 == 0 ? 0.03f : 0.3f);
         for (uint32_t k = 0; k < count && i % 2 == 1; k += 2) { /* equal centroids, other sizes */
             float x = (float)(k % 40);
             soup_set_box(&soup, k, (float[3]){-x, 0, 0}, (float[3]){x, 1, 0});
         }
         soup_box(&soup);
-        struct bvh bvh =
+        own_bvh bvh =
             soup_build(&soup, (whit_accel_params){.build = WHIT_BUILD_SWEEP, .leaf_limit = 1});
         compared += check_splits(&bvh, soup.boxes, &bvh.nodes[0]);
-        bvh_finish(&bvh);
-        soup_finish(&soup);
     }
     assert_in_range(compared, 1500, 2200);
 }
@@ -188,10 +182,8 @@ TEST(sweep_finds_the_splits_of_the_quadratic_search)
 
 static double cost_of(const struct soup *soup, whit_accel_params params)
 {
-    struct bvh bvh = soup_build(soup, params);
-    double cost = bvh.sah_cost;
-    bvh_finish(&bvh);
-    return cost;
+    own_bvh bvh = soup_build(soup, params);
+    return bvh.sah_cost;
 }
 
 static struct soup soup_uneven(uint32_t count)
@@ -249,7 +241,7 @@ TEST(sweeping_is_as_good_as_bins)
     static const uint32_t bins[] = {0, 2, 4, 7, 8, 16, 32, 64, 128, 256};
     for (uint32_t round = 0; round < 3; ++round) {
         random_state = 20 + round;
-        struct soup soup = soup_scattered(20000, sizes[round]);
+        own_soup soup = soup_scattered(20000, sizes[round]);
         double costs[sizeof bins / sizeof *bins], best = INFINITY;
         for (size_t k = 0; k < sizeof bins / sizeof *bins; ++k) {
             costs[k] = cost_of(&soup, (whit_accel_params){.bins = bins[k]});
@@ -257,7 +249,6 @@ TEST(sweeping_is_as_good_as_bins)
         }
         assert_true(cost_of(&soup, (whit_accel_params){.build = WHIT_BUILD_SWEEP}) <= 1.005 * best);
         assert_true(costs[0] <= 1.02 * best);
-        soup_finish(&soup);
     }
 }
 
@@ -269,8 +260,8 @@ TEST(no_tree_is_one_box_for_all)
     static const uint32_t counts[] = {1, 15, 16, 1000};
     for (size_t c = 0; c < sizeof counts / sizeof *counts; ++c) {
         uint32_t count = counts[c], leaves = (count + BVH_LEAF_MAX - 1) / BVH_LEAF_MAX;
-        struct soup soup = soup_scattered(count, 0.1f);
-        struct bvh bvh = soup_build(
+        own_soup soup = soup_scattered(count, 0.1f);
+        own_bvh bvh = soup_build(
             &soup, (whit_accel_params){.build = WHIT_BUILD_NONE, .leaf_limit = BVH_LEAF_MAX});
         assert_int_equal(bvh_validate(&silent, &bvh, soup.boxes, BVH_LEAF_MAX), WHIT_OK);
         assert_int_equal(bvh.leaf_count, leaves);
@@ -282,7 +273,5 @@ TEST(no_tree_is_one_box_for_all)
         }
         for (uint32_t i = 0; i < count; ++i)
             assert_int_equal(bvh.order[i], i);
-        bvh_finish(&bvh);
-        soup_finish(&soup);
     }
 }

@@ -140,17 +140,13 @@ TEST(few_triangles)
         random_state = count;
         check_all(soup_hair(count, 0.3f));
     }
-    struct soup none = soup_make("none", 0), one = soup_scattered(1, 1.0f);
-    struct bvh empty = soup_build(&none, (whit_accel_params){0});
-    struct bvh leaf = soup_build(&one, (whit_accel_params){0});
+    own_soup none = soup_make("none", 0), one = soup_scattered(1, 1.0f);
+    own_bvh empty = soup_build(&none, (whit_accel_params){0});
+    own_bvh leaf = soup_build(&one, (whit_accel_params){0});
     assert_int_equal(empty.node_count, 0);
     assert_int_equal(leaf.node_count, 2);
     assert_int_equal(leaf.depth, 0);
     assert_int_equal(bvh_count(&leaf.nodes[0]), 1);
-    bvh_finish(&empty);
-    bvh_finish(&leaf);
-    soup_finish(&none);
-    soup_finish(&one);
 }
 
 /* Random floats: extents and areas overflow, denormals vanish, many centroids coincide. */
@@ -176,17 +172,15 @@ TEST(a_thousand_trees_are_right)
 TEST(depth_is_capped)
 {
     const whit_accel_params params = {.bins = 2, .leaf_limit = 1};
-    struct soup soup = soup_make("halves", 230);
+    own_soup soup = soup_make("halves", 230);
     for (uint32_t i = 0; i < soup.count; ++i) {
         float at = (float)ldexp(1.0, (int)i - 112);
         soup_set_box(&soup, i, (float[3]){at, 0, 0}, (float[3]){1.5f * at, 1.5f * at, 1.5f * at});
     }
     soup_box(&soup);
-    struct bvh bvh = soup_build(&soup, params);
+    own_bvh bvh = soup_build(&soup, params);
     assert_null(find_fault(&soup, &params, &bvh));
     assert_in_range(bvh.depth, 97, 127);
-    bvh_finish(&bvh);
-    soup_finish(&soup);
 }
 
 /* Points at ten places on a line, shuffled: no point on the left side of a median split lies to the
@@ -195,19 +189,17 @@ TEST(medians_separate)
 {
     const whit_accel_params params = {.build = WHIT_BUILD_MEDIAN, .leaf_limit = 1};
     random_state = 13;
-    struct soup soup = soup_make("heaps", 200);
+    own_soup soup = soup_make("heaps", 200);
     for (uint32_t i = 0; i < soup.count; ++i) {
         const float p[3] = {(float)random_below(&random_state, 10), 0, 0};
         soup_set(&soup, i, p, p, p);
     }
     soup_box(&soup);
-    struct bvh bvh = soup_build(&soup, params);
+    own_bvh bvh = soup_build(&soup, params);
     assert_null(find_fault(&soup, &params, &bvh));
     assert_int_equal(bvh.depth, 8);
     for (uint32_t i = 2; i < bvh.node_count; i += 2)
         assert_true(bvh.nodes[i].hi[0] <= bvh.nodes[i + 1].lo[0]);
-    bvh_finish(&bvh);
-    soup_finish(&soup);
 }
 
 /* A tree by hand: `chain` leaves that hang beside each other on one path, the deepest first to
@@ -242,7 +234,7 @@ static void chain_make(uint32_t chain, struct bvh *bvh)
 TEST(optimizing_keeps_the_limit_of_depth)
 {
     for (uint32_t depth = 2; depth <= BVH_DEPTH_MAX; ++depth) {
-        struct bvh bvh;
+        own_bvh bvh = {0};
         chain_make(depth + 1, &bvh);
         assert_int_equal(bvh.depth, depth);
         double before = bvh.sah_cost;
@@ -252,7 +244,6 @@ TEST(optimizing_keeps_the_limit_of_depth)
         assert_true(bvh.sah_cost <= before);
         if (depth == 64)
             assert_true(bvh.sah_cost < 0.5 * before && bvh.depth < 32);
-        bvh_finish(&bvh);
     }
 }
 

@@ -69,6 +69,9 @@ static inline void soup_finish(struct soup *soup)
     free(soup->boxes);
 }
 
+/* Freed at the end of its block. */
+#define own_soup __attribute__((cleanup(soup_finish))) struct soup
+
 static inline const float *soup_vertex(const struct soup *soup, uint32_t triangle, uint32_t corner)
 {
     return &soup->positions[9 * (size_t)triangle + 3 * (size_t)corner];

@@ -228,7 +228,7 @@ TEST(surfaces_are_described)
                 {"one flipped", 0, 0, 3, 0},
                 {"one twice", 3, 3, 0, 1}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
-        struct soup soup = soup_of_mesh("box", mesh_box(1, 2, 3));
+        own_soup soup = soup_of_mesh("box", mesh_box(1, 2, 3));
         const float *v[3] = {soup_vertex(&soup, 0, 0), soup_vertex(&soup, 0, 1),
                              soup_vertex(&soup, 0, 2)};
         struct hard_topology t;
@@ -249,6 +249,5 @@ TEST(surfaces_are_described)
             fail_msg("%s", rows[i].name);
         hard_topology_finish(&t);
         scene_destroy(scene);
-        soup_finish(&soup);
     }
 }

@@ -27,9 +27,8 @@ static struct world instances_world(void)
     for (int i = 0; i < 12; ++i) {
         struct affine m = placement_random(&random_state, 1.0, i % 2 == 0);
         m.m[11] = i % 3 ? m.m[11] : 1000.0;
-        struct soup soup = i % 2 ? soup_sphere(10, 10) : soup_scattered(50, 0.6f);
+        own_soup soup = i % 2 ? soup_sphere(10, 10) : soup_scattered(50, 0.6f);
         scene_put(scene, mesh_triangles(soup.positions, soup.count), &(struct put){.matrix = &m});
-        soup_finish(&soup);
     }
     return world_of(scene, (whit_accel_params){0});
 }

@@ -47,7 +47,7 @@ TEST(clips_hold_what_is_inside)
         float at = (float)ldexp(random_float(&random_state) - 0.5, power);
         float thin =
             round % 4 == 0 ? 0.0f : (float)ldexp(1.0, -(int)random_below(&random_state, 30));
-        struct soup soup = soup_hair(1, thin);
+        own_soup soup = soup_hair(1, thin);
         for (int k = 0; k < 9; ++k)
             soup.positions[k] += at;
         soup_box(&soup);
@@ -82,7 +82,6 @@ TEST(clips_hold_what_is_inside)
             assert_int_equal(points_inside(points, cell.lo, cell.hi), 0);
             ++empty;
         }
-        soup_finish(&soup);
     }
     assert_true(empty > 300 && empty < 7000);
 }
@@ -107,20 +106,18 @@ TEST(budgets_are_kept_and_used)
                 {3.0f, 0, COUNT, COUNT + 12000},
                 {10.0f, 1e-9f, COUNT + 1, 15000}};
     random_state = 5;
-    struct soup soup = soup_rooms(COUNT / 2);
+    own_soup soup = soup_rooms(COUNT / 2);
     double last = INFINITY;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
-        struct bvh bvh = soup_build(&soup, (whit_accel_params){.build = WHIT_BUILD_SPATIAL,
-                                                               .spatial_budget = rows[i].budget,
-                                                               .spatial_alpha = rows[i].alpha});
+        own_bvh bvh = soup_build(&soup, (whit_accel_params){.build = WHIT_BUILD_SPATIAL,
+                                                            .spatial_budget = rows[i].budget,
+                                                            .spatial_alpha = rows[i].alpha});
         if (bvh.reference_count < rows[i].min || bvh.reference_count > rows[i].max ||
             bvh.sah_cost > last)
             fail_msg("budget %g: %u references, cost %g after %g", (double)rows[i].budget,
                      bvh.reference_count, bvh.sah_cost, last);
         last = rows[i].alpha > 0.0f ? last : bvh.sah_cost;
-        bvh_finish(&bvh);
     }
-    soup_finish(&soup);
 }
 
 /* Splits are tried only where children overlap enough. */
@@ -128,23 +125,21 @@ TEST(overlap_decides)
 {
     static const float alphas[] = {1e-9f, 1e-2f, 0.1f, 1.0f};
     random_state = 6;
-    struct soup soup = soup_rooms(1000);
+    own_soup soup = soup_rooms(1000);
     uint32_t last = UINT32_MAX;
     for (int i = 0; i < 4; ++i) {
-        struct bvh bvh = soup_build(
+        own_bvh bvh = soup_build(
             &soup, (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .spatial_alpha = alphas[i]});
         assert_true(bvh.reference_count < last);
         last = bvh.reference_count;
-        bvh_finish(&bvh);
     }
     assert_int_equal(last, soup.count);
-    soup_finish(&soup);
 }
 
 TEST(whole_triangles_stay_whole)
 {
     random_state = 7;
-    struct soup soup = soup_rooms(1500);
+    own_soup soup = soup_rooms(1500);
     uint8_t *whole = calloc(soup.count, 1);
     uint32_t *times = calloc(soup.count, sizeof *times);
     assert_true(whole && times);
@@ -152,7 +147,7 @@ TEST(whole_triangles_stay_whole)
     for (int round = 0; round < 3; ++round) {
         for (uint32_t i = 0; i < soup.count; ++i)
             whole[i] = round == 0 ? 0 : round == 1 ? i / 2 % 2 : 1;
-        struct bvh bvh = soup_build(
+        own_bvh bvh = soup_build(
             &soup, (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .spatial_budget = 2.0f});
         memset(times, 0, soup.count * sizeof *times);
         for (uint32_t i = 0; i < bvh.reference_count; ++i)
@@ -161,11 +156,9 @@ TEST(whole_triangles_stay_whole)
             assert_true(times[i] == 1 || (times[i] > 1 && !whole[i]));
         assert_int_equal(bvh.clipped, round < 2);
         assert_true(is_covered(&soup, &bvh));
-        bvh_finish(&bvh);
     }
     free(whole);
     free(times);
-    soup_finish(&soup);
 }
 
 /* ---- Hits ---- */
@@ -260,7 +253,7 @@ TEST(lost_parts_are_noticed)
 TEST(filters_are_met_once)
 {
     random_state = 11;
-    struct soup soup = soup_rooms(1500);
+    own_soup soup = soup_rooms(1500);
     struct scene *scene = soup_scene(&soup);
     struct scene_material glass = material_grey("glass");
     set_rgb(glass.transmission, 0.5f, 0.5f, 0.5f);
@@ -281,5 +274,4 @@ TEST(filters_are_met_once)
     }
     assert_true(filters >= accel->triangle_count / 3);
     free(times);
-    soup_finish(&soup);
 }

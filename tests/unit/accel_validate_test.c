@@ -166,9 +166,9 @@ TEST(broken_trees_are_refused)
 {
     enum { WAYS = sizeof breakages / sizeof *breakages, WORDS = sizeof changes / sizeof *changes };
     random_state = 11;
-    struct soup soup = soup_scattered(500, 0.1f);
+    own_soup soup = soup_scattered(500, 0.1f);
     for (size_t i = 0; i < WAYS + WORDS; ++i) {
-        struct bvh bvh = soup_build(&soup, (whit_accel_params){0});
+        own_bvh bvh = soup_build(&soup, (whit_accel_params){0});
         if (i < WAYS) {
             if (breakages[i].apply)
                 breakages[i].apply(&bvh);
@@ -177,9 +177,7 @@ TEST(broken_trees_are_refused)
             change_word(&bvh, i - WAYS);
             assert_said(&bvh, soup.boxes, changes[i - WAYS].name, changes[i - WAYS].reason);
         }
-        bvh_finish(&bvh);
     }
-    soup_finish(&soup);
 }
 
 /* ---- Split primitives ---- */
@@ -242,10 +240,10 @@ TEST(split_primitives_must_be_covered)
 TEST(validator_survives_any_bytes)
 {
     random_state = 12;
-    struct soup soup = soup_scattered(200, 0.1f);
+    own_soup soup = soup_scattered(200, 0.1f);
     uint32_t accepted = 0;
     for (int round = 0; round < 5000; ++round) {
-        struct bvh bvh = soup_build(&soup, (whit_accel_params){0});
+        own_bvh bvh = soup_build(&soup, (whit_accel_params){0});
         uint32_t flips = 1 + random_below(&random_state, 4);
         for (uint32_t k = 0; k < flips; ++k) {
             uint8_t *bytes =
@@ -255,8 +253,6 @@ TEST(validator_survives_any_bytes)
             bytes[random_bits(&random_state) % size] = (uint8_t)random_bits(&random_state);
         }
         accepted += bvh_validate(&silent, &bvh, NULL, 4) == WHIT_OK;
-        bvh_finish(&bvh);
     }
     assert_true(accepted < 2500); /* widened boxes and the unused node are no faults */
-    soup_finish(&soup);
 }

@@ -29,7 +29,7 @@ TEST(one_giant_costs_little)
     const uint32_t small_ones = many ? (uint32_t)atoi(many) : 20000;
     const float size = 0.02f * cbrtf(20000.0f / (float)small_ones);
     random_state = 3;
-    struct soup soup = soup_scattered(small_ones + 1, size);
+    own_soup soup = soup_scattered(small_ones + 1, size);
     soup_set(&soup, small_ones, (float[3]){-1000, -1.1f, -1000}, (float[3]){1000, -1.1f, -1000},
              (float[3]){0, -1.2f, 1000});
     struct scene *scene = scene_ready(soup_scene(&soup));
@@ -48,7 +48,6 @@ TEST(one_giant_costs_little)
         assert_true(cost.triangles <= 2 * sweep.triangles);
     }
     scene_destroy(scene);
-    soup_finish(&soup);
 }
 
 /* ORDER_BASIC opens the most nodes. Spatial splits save some where boxes overlap. */
@@ -64,7 +63,7 @@ TEST(orders_and_splits_save_visits)
                 {soup_hair(2500, 1e-3f), 0.99},
                 {soup_hair(1500, 0.05f), 0.99}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
-        struct soup soup = rows[i].soup;
+        own_soup soup = rows[i].soup;
         struct scene *scene = scene_ready(soup_scene(&soup));
         const whit_accel_params binned = {.build = WHIT_BUILD_BINNED},
                                 split = {.build = WHIT_BUILD_SPATIAL};
@@ -77,6 +76,5 @@ TEST(orders_and_splits_save_visits)
         if (distance >= basic || sign >= basic || spatial > rows[i].spatial * distance)
             fail_msg("%s", soup.name);
         scene_destroy(scene);
-        soup_finish(&soup);
     }
 }
