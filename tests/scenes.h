@@ -45,6 +45,14 @@ static inline void set_rgb(float *rgb, float r, float g, float b)
 
 /* ---- Scenes ---- */
 
+static inline void drop_scene(struct scene **at)
+{
+    scene_destroy(*at);
+}
+
+/* Freed at the end of its block: own_scene *scene = ...; */
+#define own_scene __attribute__((cleanup(drop_scene))) struct scene
+
 /* Begins an empty scene. `log` may be NULL. */
 struct scene *scene_begin(const whit_log *log, const char *name);
 

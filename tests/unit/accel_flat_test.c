@@ -383,7 +383,7 @@ TEST(too_many_triangles_are_refused)
         {9, UINT64_C(160) << 20, NULL, NULL},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
-        struct scene *scene = many_spheres(rows[i].spheres, rows[i].memory_limit);
+        own_scene *scene = many_spheres(rows[i].spheres, rows[i].memory_limit);
         struct accel *accel = NULL;
         whit_result result = accel_create(&silent, scene, &flatten, &accel);
         assert_int_equal(result, rows[i].said ? WHIT_ERROR_INPUT : WHIT_OK);
@@ -392,6 +392,5 @@ TEST(too_many_triangles_are_refused)
                               strstr(messages.last_error, rows[i].also)))
             fail_msg("row %zu: said `%s`", i, messages.last_error);
         accel_destroy(accel);
-        scene_destroy(scene);
     }
 }

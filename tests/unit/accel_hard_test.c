@@ -239,7 +239,7 @@ TEST(surfaces_are_described)
                    6 * sizeof(float));
         if (i == 3)
             soup_set(&soup, soup.count - 1, v[0], v[1], v[2]);
-        struct scene *scene = scene_ready(soup_scene(&soup));
+        own_scene *scene = scene_ready(soup_scene(&soup));
         assert_int_equal(hard_topology_init(scene, &t), WHIT_OK);
         for (uint32_t k = 0; k < t.triangles; ++k)
             touched += t.open[k];
@@ -248,6 +248,5 @@ TEST(surfaces_are_described)
             (touched > 0) != (rows[i].open + rows[i].crowded > 0))
             fail_msg("%s", rows[i].name);
         hard_topology_finish(&t);
-        scene_destroy(scene);
     }
 }

@@ -30,7 +30,7 @@ static struct gpu_ray ray_at_record(const struct accel *accel, uint32_t i)
 TEST(ten_million_triangles)
 {
     struct scene_mesh mesh;
-    struct scene *scene = NULL;
+    own_scene *scene = NULL;
     assert_int_equal(shape_terrain(10.0, 2.0, STEPS, 5, &mesh), WHIT_OK);
     assert_int_equal(hard_scene_of_mesh(&silent, "terrain", &mesh, NULL, &scene), WHIT_OK);
     assert_int_equal(scene->triangle_total, 2 * STEPS * STEPS);
@@ -61,5 +61,4 @@ TEST(ten_million_triangles)
     assert_int_equal(missed[0] + missed[1] + other[1], 0);
     rational_destroy(rational);
     accel_destroy(accel);
-    scene_destroy(scene);
 }

@@ -97,7 +97,7 @@ TEST(flat_keeps_spheres_that_stay_spheres)
         .instances = WHIT_INSTANCES_OFF, .validate = true, .build = WHIT_BUILD_SPATIAL};
     random_state = 5;
     for (int turned = 0; turned < 2; ++turned) {
-        struct scene *scene = sphere_scene(&silent, scattered_spheres(50, 1.0, 0.3), false);
+        own_scene *scene = sphere_scene(&silent, scattered_spheres(50, 1.0, 0.3), false);
         const double t[3] = {0.25, -1.5, 0.5}, q[4] = {0, turned, 0, 1}, s[3] = {2, 2, 2};
         const struct affine matrix = affine_from_trs(t, q, s);
         scene_put_again(scene, 0, &(struct put){.name = "second", .matrix = &matrix});
@@ -119,6 +119,5 @@ TEST(flat_keeps_spheres_that_stay_spheres)
         assert_true(turned || same > 9990);
         accel_destroy(one);
         accel_destroy(many);
-        scene_destroy(scene);
     }
 }

@@ -32,7 +32,7 @@ TEST(one_giant_costs_little)
     own_soup soup = soup_scattered(small_ones + 1, size);
     soup_set(&soup, small_ones, (float[3]){-1000, -1.1f, -1000}, (float[3]){1000, -1.1f, -1000},
              (float[3]){0, -1.2f, 1000});
-    struct scene *scene = scene_ready(soup_scene(&soup));
+    own_scene *scene = scene_ready(soup_scene(&soup));
     struct gpu_cost sweep =
         cost_of(scene, NULL, (whit_accel_params){.build = WHIT_BUILD_SWEEP}, ORDER_DISTANCE);
     static const whit_accel_params others[] = {
@@ -47,7 +47,6 @@ TEST(one_giant_costs_little)
         assert_true(cost.inner_nodes <= 2 * sweep.inner_nodes);
         assert_true(cost.triangles <= 2 * sweep.triangles);
     }
-    scene_destroy(scene);
 }
 
 /* ORDER_BASIC opens the most nodes. Spatial splits save some where boxes overlap. */
@@ -64,7 +63,7 @@ TEST(orders_and_splits_save_visits)
                 {soup_hair(1500, 0.05f), 0.99}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
         own_soup soup = rows[i].soup;
-        struct scene *scene = scene_ready(soup_scene(&soup));
+        own_scene *scene = scene_ready(soup_scene(&soup));
         const whit_accel_params binned = {.build = WHIT_BUILD_BINNED},
                                 split = {.build = WHIT_BUILD_SPATIAL};
         uint32_t basic = cost_of(scene, &soup, binned, ORDER_BASIC).inner_nodes,
@@ -75,6 +74,5 @@ TEST(orders_and_splits_save_visits)
                       basic, distance, sign, spatial);
         if (distance >= basic || sign >= basic || spatial > rows[i].spatial * distance)
             fail_msg("%s", soup.name);
-        scene_destroy(scene);
     }
 }

@@ -2,6 +2,7 @@
 #ifndef LOAD_MODEL_FIXTURE_H
 #define LOAD_MODEL_FIXTURE_H
 
+#include "../scenes.h"
 #include "base/array.h"
 #include "folder_fixture.h"
 #include "load/model.h"

@@ -1,6 +1,7 @@
 /* References in foreign files cannot lead out of their folder: each trick to name a file is tried
    with each kind of reference, and every file that is opened is checked. */
 #define _GNU_SOURCE
+#include "../scenes.h"
 #include "../wrapped.h"
 #include "base/array.h"
 #include "load/model.h"
@@ -300,7 +301,7 @@ static bool holds_secret(const struct scene *scene)
 
 static void load(const char *path, const char *allowed, struct outcome *out)
 {
-    struct scene *scene = NULL;
+    own_scene *scene = NULL;
     *out = (struct outcome){0};
     const whit_log log = messages_log(&messages);
     const whit_load_params params = {
@@ -311,7 +312,6 @@ static void load(const char *path, const char *allowed, struct outcome *out)
         used += (size_t)snprintf(out->text + used, sizeof out->text - used, "%s\n",
                                  scene->notes[i].text);
     out->secret = scene && holds_secret(scene);
-    scene_destroy(scene);
 }
 
 TEST_IN(nothing_outside_is_read, begin, end)

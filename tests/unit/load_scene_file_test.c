@@ -162,7 +162,7 @@ TEST_IN(camera_kinds_do_not_mix, folder_begin, folder_end)
 
 TEST_IN(camera_kinds_are_read, folder_begin, folder_end)
 {
-    struct scene *scene =
+    own_scene *scene =
         load_fine("{\"cameras\":[{\"lens\":0.25,\"focus\":7,\"fov\":179.9},{\"lens\":0.5},"
                   "{\"panorama\":true},{\"panorama\":false,\"fov\":0.001}]}");
     const struct scene_camera *c = scene->cameras;
@@ -173,7 +173,6 @@ TEST_IN(camera_kinds_are_read, folder_begin, folder_end)
     assert_int_equal(c[2].kind, WHIT_CAMERA_PANORAMA);
     assert_int_equal(c[3].kind, WHIT_CAMERA_PERSPECTIVE);
     assert_true(fabs((double)c[3].fov_y - 1.7453293e-5) < 1e-11 && c[3].lens_radius == 0.0f);
-    scene_destroy(scene);
 }
 
 TEST_IN(nested_repeats_have_a_limit, folder_begin, folder_end)
@@ -198,7 +197,7 @@ TEST_IN(deep_children_are_refused, folder_begin, folder_end)
 
 TEST_IN(shapes_are_placed, folder_begin, folder_end)
 {
-    struct scene *scene = load_fine(
+    own_scene *scene = load_fine(
         "{\"objects\":[{\"shape\":\"box\",\"size\":[1,2,3],\"translation\":[5,0,0],"
         "\"rotation\":[0,90,0],\"scale\":2,\"children\":[{\"shape\":\"sphere\",\"segments\":8,"
         "\"rings\":4,\"translation\":[0,0,1]}]}]}");
@@ -211,24 +210,22 @@ TEST_IN(shapes_are_placed, folder_begin, folder_end)
     assert_true(fabs(pose.instances[1].m[3] - 7.0) < 1e-12);
     assert_true(fabs(pose.instances[1].m[11]) < 1e-12);
     scene_pose_finish(&pose);
-    scene_destroy(scene);
 }
 
 TEST_IN(equal_shapes_share_a_mesh, folder_begin, folder_end)
 {
-    struct scene *scene =
+    own_scene *scene =
         load_fine("{\"objects\":[{\"shape\":\"box\"},{\"shape\":\"box\",\"translation\":[3,0,0]},"
                   "{\"shape\":\"box\",\"size\":2}]}");
     assert_int_equal(scene->mesh_count, 2);
     assert_int_equal(scene->instance_count, 3);
     assert_int_equal(scene->instances[0].mesh, scene->instances[1].mesh);
     assert_int_equal(scene->material_count, 1);
-    scene_destroy(scene);
 }
 
 TEST_IN(repeat_places_copies_around, folder_begin, folder_end)
 {
-    struct scene *scene =
+    own_scene *scene =
         load_fine("{\"objects\":[{\"translation\":[0,7,0],\"repeat\":{\"count\":[3,1,2],"
                   "\"step\":[10,0,4]},\"children\":[{\"shape\":\"box\"},{\"shape\":\"cone\"}]}]}");
     struct scene_pose pose;
@@ -244,12 +241,11 @@ TEST_IN(repeat_places_copies_around, folder_begin, folder_end)
     }
     assert_true(min_x == -10.0 && max_x == 10.0 && max_z == 2.0);
     scene_pose_finish(&pose);
-    scene_destroy(scene);
 }
 
 TEST_IN(repeated_animation_moves_every_copy, folder_begin, folder_end)
 {
-    struct scene *scene = load_fine(
+    own_scene *scene = load_fine(
         "{\"objects\":[{\"shape\":\"box\",\"repeat\":{\"count\":[4,1,1],\"step\":[3,0,0]},"
         "\"animation\":{\"translation\":{\"times\":[0,2],\"values\":[[0,0,0],[0,8,0]]}}}]}");
     struct scene_pose pose;
@@ -258,12 +254,11 @@ TEST_IN(repeated_animation_moves_every_copy, folder_begin, folder_end)
     for (uint32_t i = 0; i < 4; ++i)
         assert_true(fabs(pose.instances[i].m[7] - 4.0) < 1e-6);
     scene_pose_finish(&pose);
-    scene_destroy(scene);
 }
 
 TEST_IN(sphereflake_is_instances, folder_begin, folder_end)
 {
-    struct scene *scene =
+    own_scene *scene =
         load_fine("{\"objects\":[{\"shape\":\"sphereflake\",\"level\":2,\"segments\":8,"
                   "\"rings\":4,\"radius\":2}]}");
     struct scene_pose pose;
@@ -273,7 +268,6 @@ TEST_IN(sphereflake_is_instances, folder_begin, folder_end)
     assert_true(pose.instances[0].m[0] == 2.0);
     assert_true(fabs(pose.instances[90].m[0]) < 0.3);
     scene_pose_finish(&pose);
-    scene_destroy(scene);
 }
 
 /* "ball" and "spheres" are sphere primitives; equal balls share a mesh, each list has its own
@@ -315,7 +309,7 @@ TEST_IN(balls_are_spheres, folder_begin, folder_end)
 
 TEST_IN(materials_mean_what_they_say, folder_begin, folder_end)
 {
-    struct scene *scene =
+    own_scene *scene =
         load_fine("{\"materials\":{\n\"plain\":{\"diffuse\":\"#ff0080\"},\n"
                   "\"glass\":{\"transmission\":0.9,\"ior\":1.33,\"absorption\":[1,2,3]},\n"
                   "\"mirror\":{\"reflection\":[0.9,0.8,0.7]},\n"
@@ -345,12 +339,11 @@ TEST_IN(materials_mean_what_they_say, folder_begin, folder_end)
     assert_true(material_named(scene, "wine")->one_sided);
     assert_true(material_named(scene, "stage")->shadow_catcher);
     assert_false(m->one_sided || m->shadow_catcher || m->priority);
-    scene_destroy(scene);
 }
 
 TEST_IN(patterns_become_textures, folder_begin, folder_end)
 {
-    struct scene *scene = load_fine(
+    own_scene *scene = load_fine(
         "{\"materials\":{\"a\":{\"texture\":{\"checker\":{\"colors\":[1,\"#204060\"],"
         "\"size\":8}}},\"b\":{\"texture\":{\"checker\":{\"colors\":[1,\"#204060\"]}}},"
         "\"c\":{\"texture\":{\"brick\":{\"colors\":[1,0]},\"rotation\":90,\"wrap\":\"mirror\"}}}}");
@@ -365,12 +358,11 @@ TEST_IN(patterns_become_textures, folder_begin, folder_end)
     assert_true(fabsf(c->transform[1] + 1.0f) < 1e-6f && fabsf(c->transform[3] - 1.0f) < 1e-6f);
     assert_int_equal(c->wrap_u, SCENE_WRAP_MIRROR);
     assert_true(material_named(scene, "a")->diffuse[0] == 1.0f);
-    scene_destroy(scene);
 }
 
 static void lights_cameras_and_sky(void)
 {
-    struct scene *scene = load_fine(
+    own_scene *scene = load_fine(
         "{\"ambient\":[0.1,0.2,0.3],\"environment\":{\"map\":\"sky.pfm\",\"scale\":2},"
         "\"cameras\":[{\"eye\":[0,0,3],\"fov\":90},{\"eye\":[0,0,3],\"height\":2}],"
         "\"lights\":[{\"kind\":\"spot\",\"position\":[0,4,0],\"target\":[0,0,0],\"outer\":60,"
@@ -387,12 +379,11 @@ static void lights_cameras_and_sky(void)
     assert_true(spot->direction[1] == -1.0 && spot->falloff && spot->color[1] == 4.0f);
     assert_true(fabsf(spot->cos_outer - 0.5f) < 1e-6f && spot->cos_inner > 0.86f);
     assert_true(fabs(sun->direction[2] - 0.8) < 1e-12 && !sun->falloff);
-    scene_destroy(scene);
 }
 
 TEST_IN(flat_emitters, folder_begin, folder_end)
 {
-    struct scene *scene = load_fine(
+    own_scene *scene = load_fine(
         "{\"lights\":[{\"kind\":\"rectangle\",\"position\":[1,4,2],\"u\":[2,0,0],"
         "\"v\":[0,0,6],\"intensity\":8,\"two_sided\":true},"
         "{\"kind\":\"triangle\",\"points\":[[1,1,1],[3,1,1],[1,2,1]],\"color\":[1,2,3]}]}");
@@ -403,7 +394,6 @@ TEST_IN(flat_emitters, folder_begin, folder_end)
     assert_int_equal(corner->kind, WHIT_LIGHT_TRIANGLE);
     assert_true(corner->position[1] == 1.0 && !corner->two_sided && corner->color[2] == 3.0f);
     assert_true(corner->edge_u[0] == 2.0 && corner->edge_v[1] == 1.0);
-    scene_destroy(scene);
 }
 
 TEST_IN(sky_test, folder_begin, folder_end)
@@ -425,14 +415,13 @@ TEST_IN(textures_are_found, folder_begin, folder_end)
     const uint8_t tga[] = {0, 0, 2, 0, 0,  0,    0, 0, 0, 0, 0, 0,
                            2, 0, 1, 0, 24, 0x20, 3, 2, 1, 6, 5, 4};
     put_data("Wood.TGA", tga, sizeof tga);
-    struct scene *scene = load_fine("{\"materials\":{\"a\":{\"texture\":\".\\\\wood.tga\"},"
-                                    "\"b\":{\"texture\":\"Wood.TGA\"}}}");
+    own_scene *scene = load_fine("{\"materials\":{\"a\":{\"texture\":\".\\\\wood.tga\"},"
+                                 "\"b\":{\"texture\":\"Wood.TGA\"}}}");
     const struct scene_texture *found =
         &scene->textures[material_named(scene, "a")->textures[0].texture];
     const uint8_t texels[] = {1, 2, 3, 255, 4, 5, 6, 255};
     assert_int_equal(found->width, 2);
     assert_memory_equal(found->rgba, texels, sizeof texels);
-    scene_destroy(scene);
 }
 
 /* A texture that a scene file names must exist. Missing textures of models become magenta, even if
@@ -463,7 +452,7 @@ TEST_IN(missing_textures_are_refused, folder_begin, folder_end)
 
 TEST(large_textures_are_halved)
 {
-    struct scene *scene = scene_create(NULL, "test");
+    own_scene *scene = scene_create(NULL, "test");
     const whit_load_params params = {.texture_limit = 1};
     uint32_t index;
     const uint8_t tga[] = {0, 0, 2, 0, 0,  0,    0,  0,  0,  0,  0,  0,
@@ -475,7 +464,6 @@ TEST(large_textures_are_halved)
     assert_memory_equal(scene->textures[index].rgba, mean, sizeof mean);
     assert_int_equal(load_texture(scene, "cut", tga, 20, &params, &index, NULL), WHIT_OK);
     assert_int_equal(scene->textures[index].width, 1);
-    scene_destroy(scene);
 }
 
 TEST_IN(unknown_files_are_refused, folder_begin, folder_end)
@@ -509,13 +497,12 @@ TEST(shipped_scenes_have_their_sizes)
     const whit_log log = messages_log(&messages);
     for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; ++i) {
         char path[512];
-        struct scene *scene;
+        own_scene *scene = NULL;
         snprintf(path, sizeof path, "%s/%s.json", WHIT_SCENES_DIR, scenes[i].name);
         assert_int_equal(load_scene(&log, path, NULL, &scene), WHIT_OK);
         assert_int_equal(scene->triangle_total, scenes[i].triangles);
         assert_int_equal(scene->instance_count, scenes[i].instances);
         for (uint32_t k = 0; k < scene->note_count; ++k)
             assert_int_equal(scene->notes[k].level, SCENE_NOTE_INFO);
-        scene_destroy(scene);
     }
 }

@@ -39,10 +39,8 @@ static struct scene_mesh pyramid(float at)
 
 static whit_up guess(struct scene_mesh mesh, bool along_z, bool z_usual)
 {
-    struct scene *scene = lying(mesh, along_z);
-    whit_up up = up_guess(scene, z_usual);
-    scene_destroy(scene);
-    return up;
+    own_scene *scene = lying(mesh, along_z);
+    return up_guess(scene, z_usual);
 }
 
 TEST(what_stands_on_z_is_turned)
@@ -59,21 +57,18 @@ TEST(boards_keep_standing_and_floors_lie)
 {
     assert_int_equal(guess(mesh_plane(4), true, false), WHIT_UP_Y);
     assert_int_equal(guess(raised(mesh_box(4, 0.1, 4), 0.05f), true, false), WHIT_UP_Y);
-    struct scene *scene = lying(mesh_plane(20), true);
+    own_scene *scene = lying(mesh_plane(20), true);
     scene_put(scene, laid(raised(mesh_box(1, 1, 1), 0.6f)), NULL);
     assert_int_equal(up_guess(scene, false), WHIT_UP_Z);
-    scene_destroy(scene);
 }
 
 /* A ball in the middle of a plane; a share of its height is below the plane. */
 static whit_up guess_site(double share)
 {
-    struct scene *scene = scene_begin(NULL, "test");
+    own_scene *scene = scene_begin(NULL, "test");
     scene_put(scene, laid(raised(mesh_plane(4), (float)(2 * share))), NULL);
     scene_put(scene, laid(raised(mesh_icosphere(1, 3), 1)), NULL);
-    whit_up up = up_guess(scene, false);
-    scene_destroy(scene);
-    return up;
+    return up_guess(scene, false);
 }
 
 TEST(a_floor_may_have_something_below)
@@ -106,7 +101,7 @@ TEST(turns_are_of_whole_numbers)
         [WHIT_UP_X] = {1, 0, 0},        [WHIT_UP_Y] = {0, 1, 0},
         [WHIT_UP_Z] = {0, 0, 1},        [WHIT_UP_MINUS_X] = {-1, 0, 0},
         [WHIT_UP_MINUS_Y] = {0, -1, 0}, [WHIT_UP_MINUS_Z] = {0, 0, -1}};
-    struct scene *scene = scene_begin(NULL, "test");
+    own_scene *scene = scene_begin(NULL, "test");
     for (uint32_t up = WHIT_UP_Y; up <= WHIT_UP_MINUS_Z; ++up) {
         uint32_t node = up_add_node(scene, (whit_up)up);
         double out[3];
@@ -114,5 +109,4 @@ TEST(turns_are_of_whole_numbers)
         assert_true(out[0] == 0.0 && out[1] == 1.0 && out[2] == 0.0);
         assert_true(affine_determinant(&scene->nodes[node].matrix) == 1.0);
     }
-    scene_destroy(scene);
 }

@@ -449,7 +449,7 @@ static size_t damage(uint64_t *random, const uint8_t *from, size_t size_bytes, u
    Gives whether there is a scene. */
 static bool load_damaged(const char *name, const uint8_t *data, size_t size_bytes)
 {
-    struct scene *scene = NULL;
+    own_scene *scene = NULL;
     const char *path = put_data(name, data, size_bytes);
     messages.errors = 0;
     whit_result result = load_scene(&fixture.log, path, NULL, &scene);
@@ -463,7 +463,6 @@ static bool load_damaged(const char *name, const uint8_t *data, size_t size_byte
         for (size_t k = 0; k < (size_t)mesh->triangle_count * 3; k++)
             assert_true(mesh->indices[k] < mesh->vertex_count);
     }
-    scene_destroy(scene);
     unlink(path);
     return result == WHIT_OK;
 }

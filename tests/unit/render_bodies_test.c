@@ -89,7 +89,7 @@ TEST(gaps_are_known)
    no bodies. */
 TEST(one_body)
 {
-    struct scene *scene = scene_begin(NULL, "one");
+    own_scene *scene = scene_begin(NULL, "one");
     struct scene_material thin = glass("thin");
     thin.thin_walled = true;
     put_glass(scene, mesh_box(2, 2, 2), "glass", 0, 0, 0);
@@ -98,7 +98,6 @@ TEST(one_body)
     scene_put(scene, mesh_box(2, 2, 2), &(struct put){.material = &thin, .at = {0, 1, 0}});
     scene_ready(scene);
     assert_false(come_within(scene, 100.0));
-    scene_destroy(scene);
 }
 
 /* A stretched sphere is taken as its box; a sphere that is only turned and made
@@ -146,11 +145,10 @@ TEST(no_distance_is_too_large)
                 nearest = fmin(nearest, fabs(apart(p, ball) - ball[3]));
             }
         }
-        struct scene *scene = scene_begin(NULL, "any");
+        own_scene *scene = scene_begin(NULL, "any");
         put_glass(scene, mesh_triangles(corners, 1), "triangle", 0, 0, 0);
         put_glass(scene, mesh_balls(ball, 1), "ball", 0, 0, 0);
         scene_ready(scene);
         assert_true(come_within(scene, nearest + 1e-6));
-        scene_destroy(scene);
     }
 }

@@ -47,7 +47,7 @@ TEST(bad_triangles_are_dropped_and_counted)
     mesh.groups = copy_of(groups, sizeof groups);
     mesh.group_count = 2;
     mesh.materials = calloc(9, sizeof(uint32_t));
-    struct scene *scene = scene_ready(scene_of(mesh));
+    own_scene *scene = scene_ready(scene_of(mesh));
     const struct scene_mesh *m = &scene->meshes[0];
     /* These triangles are kept: vertices 0 1 2, the tiny 0 7 8, the huge 0 9 10, and 2 1 0. */
     assert_int_equal(m->triangle_count, 4);
@@ -62,7 +62,6 @@ TEST(bad_triangles_are_dropped_and_counted)
     assert_int_equal(m->groups[1].triangle_count, 3);
     assert_true(m->hi[0] == 1e17f && m->lo[0] == 0.0f);
     assert_true(m->positions[9] == 0.0f); /* the NaN is gone */
-    scene_destroy(scene);
 }
 
 TEST(bad_spheres_are_dropped_and_counted)
@@ -74,7 +73,7 @@ TEST(bad_spheres_are_dropped_and_counted)
     struct scene_mesh mesh = {.name = string_copy("balls"), .sphere_count = 9};
     mesh.spheres = copy_of(spheres, sizeof spheres);
     mesh.materials = copy_of(materials, sizeof materials);
-    struct scene *scene = scene_of(mesh);
+    own_scene *scene = scene_of(mesh);
     scene_put_material(scene, material_grey("grey"));
     scene_put_material(scene, material_grey("grey"));
     scene_ready(scene);
@@ -88,7 +87,6 @@ TEST(bad_spheres_are_dropped_and_counted)
     struct scene_effects effects;
     scene_effects_scan(scene, &effects);
     assert_true(effects.called[SCENE_EFFECT_SPHERES]);
-    scene_destroy(scene);
 }
 
 static void assert_refused(struct scene *scene)
@@ -116,7 +114,7 @@ TEST(attributes_are_mended)
     struct scene_mesh mesh = make_mesh(p, 4, indices, 1);
     mesh.normals = copy_of(normals, sizeof normals);
     mesh.uvs[0] = copy_of(uvs, sizeof uvs);
-    struct scene *scene = scene_ready(scene_of(mesh));
+    own_scene *scene = scene_ready(scene_of(mesh));
     const struct scene_mesh *m = &scene->meshes[0];
     const float mended[] = {0, 0, 1, 0, 0, 1, 0, -1, 0, 0, 0, 1};
     const float mended_uvs[] = {0.5f, 0.25f, 0, 0, 0, 0, 0, 0};
@@ -124,7 +122,6 @@ TEST(attributes_are_mended)
     assert_memory_equal(m->uvs[0], mended_uvs, sizeof mended_uvs);
     assert_true(scene_noted(scene, "3 normals"));
     assert_true(scene_noted(scene, "2 texture coordinates"));
-    scene_destroy(scene);
 }
 
 /* Whether freezing keeps a triangle's normals of length |side|; the last one has x = `lean`. */
@@ -135,10 +132,8 @@ static bool keeps_normals(float side, float lean)
     const float normals[] = {0, 0, side, 0, 0, side, lean, 0, side};
     struct scene_mesh mesh = make_mesh(p, 3, indices, 1);
     mesh.normals = copy_of(normals, sizeof normals);
-    struct scene *scene = scene_ready(scene_of(mesh));
-    bool keeps = scene->meshes[0].normals != NULL;
-    scene_destroy(scene);
-    return keeps;
+    own_scene *scene = scene_ready(scene_of(mesh));
+    return scene->meshes[0].normals != NULL;
 }
 
 TEST(normals_of_flat_faces_go)
@@ -153,7 +148,7 @@ TEST(normals_of_flat_faces_go)
 
 TEST(materials_are_mended)
 {
-    struct scene *scene = scene_of(mesh_box(2, 2, 2));
+    own_scene *scene = scene_of(mesh_box(2, 2, 2));
     struct scene_material material = material_grey("odd");
     material.diffuse[0] = (float)NAN;
     material.diffuse[1] = -1.0f;
@@ -163,7 +158,6 @@ TEST(materials_are_mended)
     const struct scene_material *m = &scene->materials[0];
     assert_true(m->diffuse[0] == 0.7f && m->diffuse[1] == 0.0f && m->ior == 1.5f);
     assert_true(scene_noted(scene, "material `odd`: 3 values"));
-    scene_destroy(scene);
 }
 
 TEST(broken_references_are_refused)
@@ -183,7 +177,7 @@ TEST(broken_references_are_refused)
 
 TEST(singular_instances_and_unused_meshes_go)
 {
-    struct scene *scene = scene_begin(NULL, "test");
+    own_scene *scene = scene_begin(NULL, "test");
     scene_put_mesh(scene, mesh_box(2, 2, 2)); /* unused */
     uint32_t mesh = scene_put_mesh(scene, mesh_box(2, 2, 2));
     struct scene_node node;
@@ -197,24 +191,22 @@ TEST(singular_instances_and_unused_meshes_go)
     assert_int_equal(scene->mesh_count, 1);
     assert_int_equal(scene->instances[0].mesh, 0);
     assert_true(scene_noted(scene, "instance 0 `i` dropped"));
-    scene_destroy(scene);
 }
 
 TEST(empty_scene_is_a_background)
 {
-    struct scene *scene = scene_begin(NULL, "test");
+    own_scene *scene = scene_begin(NULL, "test");
     scene_ready(scene);
     assert_int_equal(scene->camera_count, 1);
     assert_int_equal(scene->light_count, 1);
     assert_int_equal(scene->triangle_total, 0);
     assert_true(scene_noted(scene, "nothing to draw"));
-    scene_destroy(scene);
 }
 
 /* The light comes from behind the camera. */
 TEST(missing_camera_and_light_are_made)
 {
-    struct scene *scene = scene_ready(scene_of(mesh_box(2, 2, 2)));
+    own_scene *scene = scene_ready(scene_of(mesh_box(2, 2, 2)));
     const struct scene_camera *camera = &scene->cameras[0];
     const struct scene_light *light = &scene->lights[0];
     double along = 0.0;
@@ -223,19 +215,17 @@ TEST(missing_camera_and_light_are_made)
     assert_true(camera->made_by_whit && light->made_by_whit && scene->environment.made_by_whit);
     assert_true(along > 0.0);
     assert_true(scene->ambient[0] == 0.1f && scene->environment.horizon[0] > 0.5f);
-    scene_destroy(scene);
 }
 
 TEST(own_light_gets_no_company)
 {
-    struct scene *scene = scene_of(mesh_box(2, 2, 2));
+    own_scene *scene = scene_of(mesh_box(2, 2, 2));
     struct scene_light light = {.kind = WHIT_LIGHT_POINT, .node = SCENE_NONE, .color = {1, 1, -1}};
     scene_put_light(scene, light);
     scene_ready(scene);
     assert_int_equal(scene->light_count, 1);
     assert_true(scene->lights[0].color[2] == 0.0f);
     assert_true(scene->ambient[0] == 0.0f && scene->environment.horizon[0] == 0.0f);
-    scene_destroy(scene);
 }
 
 /* 2 * steps^2 glowing triangles. */
@@ -260,7 +250,7 @@ static struct scene *panel_scene(float radiance, uint32_t steps)
    and which lie on the panel. */
 TEST(tessellated_lamps_become_points)
 {
-    struct scene *scene = panel_scene(10.0f, 6);
+    own_scene *scene = panel_scene(10.0f, 6);
     struct scene_pose pose;
     assert_int_equal(scene_pose_init(scene_ready(scene), 0.0, &pose), WHIT_OK);
     assert_int_equal(pose.light_count, 16);
@@ -278,12 +268,11 @@ TEST(tessellated_lamps_become_points)
     assert_true(fabs(mean_x) < 0.3);
     assert_true(scene->ambient[0] == 0.03f);
     scene_pose_finish(&pose);
-    scene_destroy(scene);
 }
 
 TEST(flat_lamps_become_rectangles)
 {
-    struct scene *scene = panel_scene(10.0f, 1);
+    own_scene *scene = panel_scene(10.0f, 1);
     struct scene_pose pose;
     assert_int_equal(scene_pose_init(scene_ready(scene), 0.0, &pose), WHIT_OK);
     assert_int_equal(pose.light_count, 1);
@@ -298,14 +287,13 @@ TEST(flat_lamps_become_rectangles)
     assert_true(fabs(p[1] - 5.0) < 1e-9 && fabs(u[1]) + fabs(v[1]) < 1e-9);
     assert_true(u[2] * v[0] - u[0] * v[2] > 5.999);
     scene_pose_finish(&pose);
-    scene_destroy(scene);
 }
 
 /* Two triangles that form no parallelogram each become a light; they shine upwards also in a
    mirrored node. */
 TEST(single_triangles_become_lights)
 {
-    struct scene *scene = panel_scene(10.0f, 1);
+    own_scene *scene = panel_scene(10.0f, 1);
     struct scene_pose pose;
     scene->meshes[1].positions[0] *= 1.5f;
     scene->nodes[scene->node_count - 1].scale[0] = -3.0;
@@ -319,28 +307,24 @@ TEST(single_triangles_become_lights)
         assert_true(u[2] * v[0] - u[0] * v[2] > 2.0);
     }
     scene_pose_finish(&pose);
-    scene_destroy(scene);
 }
 
 TEST(faint_glow_lights_nothing)
 {
-    struct scene *scene = scene_ready(panel_scene(0.001f, 1));
+    own_scene *scene = scene_ready(panel_scene(0.001f, 1));
     assert_int_equal(scene->light_count, 1);
     assert_int_equal(scene->lights[0].kind, WHIT_LIGHT_DIRECTIONAL);
-    scene_destroy(scene);
 }
 
 static uint64_t hash_of(float diffuse, float move)
 {
-    struct scene *scene = scene_of(mesh_box(2, 2, 2));
+    own_scene *scene = scene_of(mesh_box(2, 2, 2));
     struct scene_material material = material_grey("m");
     material.diffuse[0] = diffuse;
     scene_put_material(scene, material);
     scene->meshes[0].positions[0] += move;
     scene_ready(scene);
-    uint64_t hash = scene->hash;
-    scene_destroy(scene);
-    return hash;
+    return scene->hash;
 }
 
 TEST(hash_follows_content)

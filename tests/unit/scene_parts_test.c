@@ -234,14 +234,13 @@ static void check_hash(struct scene *made, uint64_t hash)
 static void check_back(struct wish both, struct wish other, whit_part_kind kind, const char *name)
 {
     struct loaded before, after;
-    struct scene *expected = small_scene(&other);
+    own_scene *expected = small_scene(&other);
     take(&before, small_scene(&usual));
     take(&after, small_scene(&both));
     assert_true(after.scene->hash != expected->hash);
     check_hash(mix(&before, &after, false, kind, name), expected->hash);
     check_hash(mix(&before, &after, true, kind, NULL), before.scene->hash);
     check_hash(mix(&before, &after, false, kind, NULL), after.scene->hash);
-    scene_destroy(expected);
     drop(&before);
     drop(&after);
 }
@@ -275,14 +274,13 @@ TEST(what_a_part_names_comes_with_it)
     wish.stone = true;
     take(&before, small_scene(&usual));
     take(&after, small_scene(&wish));
-    struct scene *made = mix(&before, &after, false, WHIT_PART_MESH, "box");
+    own_scene *made = mix(&before, &after, false, WHIT_PART_MESH, "box");
     assert_int_equal(made->material_count, after.scene->material_count + 1);
     const struct scene_material *worn = &made->materials[made->meshes[1].materials[0]];
     assert_string_equal(worn->name, "wood");
     const struct scene_texture *texture =
         &made->textures[worn->textures[SCENE_SLOT_DIFFUSE].texture];
     assert_int_equal(texture->rgba[0], 10);
-    scene_destroy(made);
     drop(&before);
     drop(&after);
 }

@@ -57,7 +57,7 @@ static void assert_near(double a, double b)
 TEST(linear_and_held_ends)
 {
     const float times[] = {1, 2, 4}, values[] = {0, 0, 0, 4, 2, 0, 4, 2, 8};
-    struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 3, values, 9);
+    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 3, values, 9);
     assert_near((double)scene->time_end_s, 4.0);
     assert_near(matrix_at(scene, -5.0).m[3], 10.0);
     assert_near(matrix_at(scene, 1.25).m[3], 11.0);
@@ -65,18 +65,16 @@ TEST(linear_and_held_ends)
     assert_near(matrix_at(scene, 2.0).m[3], 14.0);
     assert_near(matrix_at(scene, 3.5).m[11], 6.0);
     assert_near(matrix_at(scene, 99.0).m[11], 8.0);
-    scene_destroy(scene);
 }
 
 TEST(steps_hold_until_the_next_key)
 {
     const float times[] = {0, 1, 2}, values[] = {1, 0, 0, 2, 0, 0, 3, 0, 0};
-    struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_STEP, times, 3, values, 9);
+    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_STEP, times, 3, values, 9);
     assert_near(matrix_at(scene, 0.999).m[3], 11.0);
     assert_near(matrix_at(scene, 1.0).m[3], 12.0);
     assert_near(matrix_at(scene, 1.999).m[3], 12.0);
     assert_near(matrix_at(scene, 2.0).m[3], 13.0);
-    scene_destroy(scene);
 }
 
 /* Tangents are per second: with 2 s between keys they count double. Compares with the polynomial
@@ -85,7 +83,7 @@ TEST(cubic_is_hermite)
 {
     const float times[] = {0, 2};
     const float values[] = {7, 7, 7, 0, 0, 0, 3, 0, 0, 5, 0, 0, 1, 0, 0, 7, 7, 7};
-    struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_CUBIC, times, 2, values, 18);
+    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_CUBIC, times, 2, values, 18);
     for (int i = 1; i < 8; ++i) {
         double s = i / 8.0, s2 = s * s, s3 = s2 * s;
         double expected =
@@ -94,7 +92,6 @@ TEST(cubic_is_hermite)
     }
     assert_near(matrix_at(scene, 0.0).m[3], 10.0);
     assert_near(matrix_at(scene, 2.0).m[3], 11.0);
-    scene_destroy(scene);
 }
 
 TEST(rotation_is_slerp_by_the_shorter_way)
@@ -102,25 +99,23 @@ TEST(rotation_is_slerp_by_the_shorter_way)
     /* 0 to 90 degrees about y, the second key written with its sign turned. */
     const float half = 0.70710678f, times[] = {0, 1};
     const float values[] = {0, 0, 0, 1, 0, -half, 0, -half};
-    struct scene *scene = moving_scene(SCENE_PATH_ROTATION, SCENE_LINEAR, times, 2, values, 8);
+    own_scene *scene = moving_scene(SCENE_PATH_ROTATION, SCENE_LINEAR, times, 2, values, 8);
     for (int i = 0; i <= 4; ++i) {
         double angle = i / 4.0 * 1.5707963267948966;
         struct affine matrix = matrix_at(scene, i / 4.0);
         assert_near(matrix.m[0], cos(angle));
         assert_near(matrix.m[2], sin(angle));
     }
-    scene_destroy(scene);
 }
 
 /* Between equal keys interpolation must not divide by the sine of the angle, which is 0. */
 TEST(rotation_between_equal_keys)
 {
     const float times[] = {0, 1}, values[] = {0, 0, 0, 2, 0, 0, 0, 2};
-    struct scene *scene = moving_scene(SCENE_PATH_ROTATION, SCENE_LINEAR, times, 2, values, 8);
+    own_scene *scene = moving_scene(SCENE_PATH_ROTATION, SCENE_LINEAR, times, 2, values, 8);
     struct affine matrix = matrix_at(scene, 0.5);
     assert_near(matrix.m[0], 1.0);
     assert_near(matrix.m[5], 1.0);
-    scene_destroy(scene);
 }
 
 /* Transforms must be finite and have an inverse; scene_freeze tests nine times of a scene. */
@@ -137,25 +132,23 @@ TEST(what_floats_cannot_place_is_refused)
 TEST(vanishing_scale_keeps_an_inverse)
 {
     const float times[] = {0, 1}, values[] = {0, 0, 0, 1, 1, 1};
-    struct scene *scene = moving_scene(SCENE_PATH_SCALE, SCENE_LINEAR, times, 2, values, 6);
+    own_scene *scene = moving_scene(SCENE_PATH_SCALE, SCENE_LINEAR, times, 2, values, 6);
     assert_true(matrix_at(scene, 0.0).m[0] > 0.0 && matrix_at(scene, 0.0).m[0] < 1e-5);
     assert_near(matrix_at(scene, 0.5).m[0], 0.5);
-    scene_destroy(scene);
 }
 
 TEST(unordered_times_are_dropped)
 {
     const float times[] = {0, 0}, values[] = {5, 0, 0, 6, 0, 0};
-    struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
+    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
     assert_int_equal(scene->channel_count, 0);
     assert_near(matrix_at(scene, 0.0).m[3], 10.0);
-    scene_destroy(scene);
 }
 
 TEST(lights_cameras_and_bounds_follow_their_nodes)
 {
     const float times[] = {0, 1}, values[] = {0, 0, 0, 0, 4, 0};
-    struct scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
+    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
     scene->frozen = false; /* so that the test can change the scene */
     scene_add_light(scene, (struct scene_light){.kind = WHIT_LIGHT_POINT,
                                                 .node = 1,
@@ -175,7 +168,6 @@ TEST(lights_cameras_and_bounds_follow_their_nodes)
     assert_near(pose.lo[1], 1.0);
     assert_near(pose.hi[0], 11.0);
     scene_pose_finish(&pose);
-    scene_destroy(scene);
 }
 
 static struct scene *glass_scene(void)
@@ -202,7 +194,7 @@ static struct scene *glass_scene(void)
 
 static void check_objects(double floor_side, double low, double high)
 {
-    struct scene *scene = scene_begin(NULL, "test");
+    own_scene *scene = scene_begin(NULL, "test");
     struct scene_pose pose;
     double lo[3], hi[3];
     uint32_t node = scene_put_node(scene, SCENE_NONE, 0, 1, 0);
@@ -215,7 +207,6 @@ static void check_objects(double floor_side, double low, double high)
     assert_float_equal(lo[0], low, 1e-5);
     assert_float_equal(hi[0], high, 1e-5);
     scene_pose_finish(&pose);
-    scene_destroy(scene);
 }
 
 TEST(objects_are_framed_without_a_wide_floor)
@@ -227,7 +218,7 @@ TEST(objects_are_framed_without_a_wide_floor)
 
 TEST(effects_have_reasons)
 {
-    struct scene *scene = glass_scene();
+    own_scene *scene = glass_scene();
     struct scene_effects effects;
     scene_effects_scan(scene, &effects);
     assert_string_equal(effects.reasons[SCENE_EFFECT_REFRACTION],
@@ -246,5 +237,4 @@ TEST(effects_have_reasons)
         assert_false(effects.called[others[i]]);
     for (int i = 0; i < SCENE_EFFECT_COUNT; ++i)
         assert_non_null(scene_effect_name((enum scene_effect)i));
-    scene_destroy(scene);
 }

@@ -83,7 +83,7 @@ TEST(closed_shapes_fill_the_usual_view)
 {
     const double scales[] = {1.0, 1e-6, 1e9};
     for (size_t k = 0; k < 3; ++k) {
-        struct scene *scene = empty_scene();
+        own_scene *scene = empty_scene();
         struct scene_mesh ball;
         assert_int_equal(shape_sphere(scales[k], 24, 12, &ball), WHIT_OK);
         scene_put(scene, ball, NULL);
@@ -102,7 +102,6 @@ TEST(closed_shapes_fill_the_usual_view)
         assert_true(lo[1] < -0.9 && hi[1] > 0.9);
         assert_true(forward[0] < -0.3 && forward[1] < -0.2 && forward[2] < -0.7);
         assert_true(scene_noted(scene, "one was added that shows all of it"));
-        scene_destroy(scene);
     }
 }
 
@@ -112,7 +111,7 @@ TEST(open_boxes_are_seen_through_their_opening)
     const unsigned sides[] = {1, 0, 5, 4};
     const double expected[][3] = {{-1, 0, 0}, {1, 0, 0}, {0, 0, -1}, {0, 0, 1}};
     for (size_t k = 0; k < 4; ++k) {
-        struct scene *scene = empty_scene();
+        own_scene *scene = empty_scene();
         scene_put(scene, walls(half, 1u << sides[k], false), NULL);
         double forward[3];
         const struct scene_camera *camera = camera_of(scene, forward);
@@ -120,7 +119,6 @@ TEST(open_boxes_are_seen_through_their_opening)
             assert_true(fabs(forward[i] - expected[k][i]) < 1e-6);
         assert_true(fabs(camera->eye[0]) + fabs(camera->eye[2]) > 2.0);
         assert_true(scene_noted(scene, "straight on"));
-        scene_destroy(scene);
     }
 }
 
@@ -128,7 +126,7 @@ TEST(open_boxes_are_seen_through_their_opening)
 TEST(mirrors_do_not_turn_surfaces)
 {
     const float half[3] = {1, 1, 1};
-    struct scene *scene = empty_scene();
+    own_scene *scene = empty_scene();
     struct scene_node node;
     scene_node_init(&node, "mirror", SCENE_NONE);
     node.scale[0] = -1.0;
@@ -137,14 +135,13 @@ TEST(mirrors_do_not_turn_surfaces)
     double forward[3];
     camera_of(scene, forward);
     assert_true(fabs(forward[2] + 1.0) < 1e-6);
-    scene_destroy(scene);
 }
 
 TEST(rooms_are_seen_from_inside)
 {
     const float half[3] = {6, 2, 3};
     for (int thick = 0; thick < 2; ++thick) {
-        struct scene *scene = empty_scene();
+        own_scene *scene = empty_scene();
         scene_put(scene, walls(half, 0, false), NULL);
         if (thick)
             scene_put(scene, walls((const float[]){6.3f, 2.3f, 3.3f}, 0, true), NULL);
@@ -165,7 +162,6 @@ TEST(rooms_are_seen_from_inside)
         assert_true((lamp[0] - camera->eye[0]) * forward[0] > 1.0);
         assert_true(fabs(lamp[1] - 0.5 * (camera->eye[1] + 2.0)) < 0.02);
         assert_true(fabs(lamp[2] * forward[0] + 1.5) < 0.02);
-        scene_destroy(scene);
     }
     /* The same walls as a solid. */
     struct scene *scene = empty_scene();
@@ -179,18 +175,17 @@ TEST(rooms_are_seen_from_inside)
 
 TEST(boards_are_seen_straight_on)
 {
-    struct scene *scene = empty_scene();
+    own_scene *scene = empty_scene();
     scene_put(scene, walls((const float[]){2, 1, 0.02f}, 0, true), NULL);
     double forward[3];
     camera_of(scene, forward);
     assert_true(fabs(forward[2] + 1.0) < 1e-9);
-    scene_destroy(scene);
 }
 
 /* A board with a picture on its far side, and a plate before most of it. */
 TEST(boards_show_their_pictures)
 {
-    struct scene *scene = empty_scene();
+    own_scene *scene = empty_scene();
     struct scene_material printed = material_grey("printed");
     printed.textures[SCENE_SLOT_DIFFUSE].texture = scene_put_texture(scene, 1, 1, (uint8_t[4]){0});
     struct scene_mesh board = walls((const float[]){1.2f, 1.2f, 0.02f}, 0x2f, true);
@@ -199,7 +194,6 @@ TEST(boards_show_their_pictures)
     double forward[3];
     camera_of(scene, forward);
     assert_true(fabs(forward[2] - 1.0) < 1e-9);
-    scene_destroy(scene);
 }
 
 /* A ball beside the middle of a floor, which is `wide` times as wide as the ball. */
@@ -233,7 +227,7 @@ TEST(small_parts_with_nearly_all_triangles_fill_the_picture)
 /* The picture has room for an object that flies away later. */
 TEST(animations_stay_in_the_picture)
 {
-    struct scene *scene = empty_scene();
+    own_scene *scene = empty_scene();
     uint32_t flies = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
     scene_put(scene, walls((const float[]){1, 1, 1}, 0, true), &(struct put){.node = &flies});
     scene_put_channel(scene, flies, SCENE_PATH_TRANSLATION, 2, (float[]){0, 2},
@@ -244,7 +238,6 @@ TEST(animations_stay_in_the_picture)
     assert_true(fabs(slope[1]) < 0.95);
     assert_true(reach(camera, forward, (const float[]){1, -1, 1}, slope) > 0.0);
     assert_true(fabs(slope[1]) < 0.95);
-    scene_destroy(scene);
 }
 
 /* A triangle turns once around its corner of 90 degrees. Corners of the box around it would go 1.4
@@ -252,7 +245,7 @@ TEST(animations_stay_in_the_picture)
 TEST(animations_fill_the_picture)
 {
     static const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-    struct scene *scene = empty_scene();
+    own_scene *scene = empty_scene();
     struct scene_mesh mesh = mesh_zeroed(3, 1);
     memcpy(mesh.positions, corners, sizeof corners);
     memcpy(mesh.indices, (uint32_t[]){0, 1, 2}, 3 * sizeof *mesh.indices);
@@ -264,7 +257,6 @@ TEST(animations_fill_the_picture)
     const struct scene_camera *camera = camera_of(scene, forward);
     assert_true(reach(camera, forward, (const float[]){0, 1, 0}, slope) > 0.0);
     assert_true(slope[1] > 0.85 && slope[1] < 0.95);
-    scene_destroy(scene);
 }
 
 /* A floor under a lamp that glows with `emission`, both stated in `file`. */
@@ -306,11 +298,10 @@ TEST(lamps_of_models_light_their_scene)
 {
     const float emissions[] = {0.5f, 17.0f, 900.0f};
     for (size_t i = 0; i < 3; ++i) {
-        struct scene *scene = lamp_scene(emissions[i], "lamp.mtl");
+        own_scene *scene = lamp_scene(emissions[i], "lamp.mtl");
         double under = light_total(scene) / 9.0;
         assert_true(under > 0.7 && under < 1.2);
         assert_true(scene->ambient[0] == 0.1f);
-        scene_destroy(scene);
     }
     struct scene *scene = lamp_scene(17.0f, "lamp.json");
     assert_true(fabs(light_total(scene) - 17.0 / 3.14159265358979) < 1e-4);
@@ -343,11 +334,10 @@ TEST(stated_lights_change_only_where_nothing_is_seen)
                  {0.001f, "a.glb", 2.5, 4.5},
                  {1000.0f, "a.json", 1000.0, 1000.0}};
     for (size_t i = 0; i < 4; ++i) {
-        struct scene *scene = lit_scene(cases[i].level, cases[i].file);
+        own_scene *scene = lit_scene(cases[i].level, cases[i].file);
         double level = (double)scene->lights[0].color[1];
         assert_true(level >= cases[i].lo && level <= cases[i].hi);
         assert_int_equal(scene_noted(scene, "times as strong"), cases[i].lo != cases[i].hi);
-        scene_destroy(scene);
     }
 }
 
@@ -387,12 +377,11 @@ TEST(a_model_that_burns_out_is_exposed_less)
                  {4000.0f, 0.8f, false, 0.0, 0.0},   {4.0f, 0.01f, true, 0.0, 0.0},
                  {0.01f, 0.8f, true, 6.0, 10.0},     {8.0f, 0.3f, true, 0.0, 0.0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        struct scene *scene =
+        own_scene *scene =
             lamp_over_floor(cases[i].level, cases[i].albedo, cases[i].is_model, WHIT_LIGHTS_FILE);
         double ev = scene->exposure_ev;
         assert_true(ev >= cases[i].lo && ev <= cases[i].hi && 2.0 * ev == floor(2.0 * ev));
         assert_int_equal(scene_noted(scene, "`--exposure auto` is"), ev != 0.0);
-        scene_destroy(scene);
     }
 }
 
@@ -402,7 +391,7 @@ TEST(metal_is_not_taken_for_its_colour)
 {
     static const uint8_t texels[2][4] = {{0, 0, 255, 255}, {0, 0, 0, 255}};
     for (int plastic = 0; plastic < 2; ++plastic) {
-        struct scene *scene = empty_scene();
+        own_scene *scene = empty_scene();
         struct scene_material m = material_plain("shiny");
         m.model = WHIT_MODEL_METAL_ROUGH;
         m.metallic = 1.0f;
@@ -414,14 +403,13 @@ TEST(metal_is_not_taken_for_its_colour)
         scene_put_camera(scene, (const double[]){0, 3, 3}, (const double[]){0, 0, 0}, 0.5);
         scene->is_model = true;
         assert_true((scene_ready(scene)->exposure_ev < 0.0) == plastic);
-        scene_destroy(scene);
     }
 }
 
 /* A lamp in a box above the floor lights nothing of it. */
 TEST(light_that_does_not_arrive_burns_nothing_out)
 {
-    struct scene *scene = empty_scene();
+    own_scene *scene = empty_scene();
     scene_put(scene, mesh_plane(100.0), NULL);
     scene_put(scene, mesh_plane(100.0), &(struct put){.at = {0, 4, 0}});
     struct scene_light light = {.kind = WHIT_LIGHT_DIRECTIONAL,
@@ -434,7 +422,6 @@ TEST(light_that_does_not_arrive_burns_nothing_out)
     scene->is_model = true;
     scene_ready(scene);
     assert_true(scene->exposure_ev == 0.0);
-    scene_destroy(scene);
 }
 
 /* ---- Lights that light nothing in view ---- */
