@@ -234,6 +234,14 @@ struct world {
     struct scene_pose pose;
 };
 
+static inline void drop_accel(struct accel **at)
+{
+    accel_destroy(*at);
+}
+
+/* Freed at the end of its block: own_accel *accel = accel_of(...); */
+#define own_accel __attribute__((cleanup(drop_accel))) struct accel
+
 /* Builds the trees of a frozen scene, and validates them. */
 static inline struct accel *accel_of(const struct scene *scene, whit_accel_params params)
 {

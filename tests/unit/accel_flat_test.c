@@ -87,7 +87,7 @@ TEST(hits_are_those_of_the_instances)
 {
     enum { RAYS = 300000 };
     own_world instanced = mixed_world((whit_accel_params){0});
-    struct accel *flat = accel_of(instanced.scene, flatten);
+    own_accel *flat = accel_of(instanced.scene, flatten);
     random_state = 1;
     struct comparison c = compare(instanced.accel, flat, RAYS);
     print_message("  %u of %u rays hit another triangle, %u met one; t is off by up to %.2g, "
@@ -97,7 +97,6 @@ TEST(hits_are_those_of_the_instances)
     assert_true(c.other <= RAYS / 100000);
     assert_true(c.t_off < 1e-4); /* t is 1 at a distance of about 10; grazing hits differ most */
     assert_true(c.cosine > 1.0 - 1e-6);
-    accel_destroy(flat);
 }
 
 TEST(builders_agree_bit_for_bit)
@@ -106,7 +105,7 @@ TEST(builders_agree_bit_for_bit)
                                           WHIT_BUILD_NONE};
     own_world first = mixed_world(flatten);
     for (size_t b = 0; b < sizeof builders / sizeof *builders; ++b) {
-        struct accel *accel =
+        own_accel *accel =
             accel_of(first.scene,
                      (whit_accel_params){.build = builders[b], .instances = WHIT_INSTANCES_OFF});
         random_state = 3;
@@ -120,7 +119,6 @@ TEST(builders_agree_bit_for_bit)
             assert_memory_equal(&x, &y, sizeof x);
             assert_memory_equal(&x, &z, sizeof x);
         }
-        accel_destroy(accel);
     }
 }
 
@@ -202,7 +200,7 @@ TEST(records_say_whose_they_are)
 TEST(a_pose_builds_anew)
 {
     own_world world = mixed_world((whit_accel_params){0});
-    struct accel *flat = accel_of(world.scene, flatten);
+    own_accel *flat = accel_of(world.scene, flatten);
     struct scene_pose *pose = &world.pose;
     uint64_t seed = 11;
     random_state = 13;
@@ -227,7 +225,6 @@ TEST(a_pose_builds_anew)
     assert_int_equal(accel_validate(flat), WHIT_OK);
     after = trace(flat, &ray);
     assert_memory_equal(&before, &after, sizeof before);
-    accel_destroy(flat);
 }
 
 /* Changes one word, and tells whether there is a change of that number. */
@@ -384,13 +381,12 @@ TEST(too_many_triangles_are_refused)
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
         own_scene *scene = many_spheres(rows[i].spheres, rows[i].memory_limit);
-        struct accel *accel = NULL;
+        own_accel *accel = NULL;
         whit_result result = accel_create(&silent, scene, &flatten, &accel);
         assert_int_equal(result, rows[i].said ? WHIT_ERROR_INPUT : WHIT_OK);
         assert_int_equal(accel == NULL, rows[i].said != NULL);
         if (rows[i].said && !(strstr(messages.last_error, rows[i].said) &&
                               strstr(messages.last_error, rows[i].also)))
             fail_msg("row %zu: said `%s`", i, messages.last_error);
-        accel_destroy(accel);
     }
 }

@@ -35,7 +35,7 @@ TEST(ten_million_triangles)
     assert_int_equal(hard_scene_of_mesh(&silent, "terrain", &mesh, NULL, &scene), WHIT_OK);
     assert_int_equal(scene->triangle_total, 2 * STEPS * STEPS);
     double before = peak_gib(), begin_ms = clock_ms();
-    struct accel *accel = accel_of(scene, (whit_accel_params){0});
+    own_accel *accel = accel_of(scene, (whit_accel_params){0});
     print_message("%u triangles: %u nodes, depth %u, built in %.1f s, with validation %.1f s; peak "
                   "memory %.2f GiB, %.2f of it the scene before\n",
                   accel->record_count, accel->node_count, accel->mesh_depth,
@@ -60,5 +60,4 @@ TEST(ten_million_triangles)
                   (uint32_t)RAYS, missed[0], other[0], missed[1], other[1]);
     assert_int_equal(missed[0] + missed[1] + other[1], 0);
     rational_destroy(rational);
-    accel_destroy(accel);
 }

@@ -23,9 +23,8 @@ TEST(trees_find_the_nearest)
 {
     random_state = 3;
     own_world world = world_of(ring_scene(), (whit_accel_params){.build = WHIT_BUILD_NONE});
-    struct accel *tree = accel_of(world.scene, (whit_accel_params){0}),
-                 *flat =
-                     accel_of(world.scene, (whit_accel_params){.instances = WHIT_INSTANCES_OFF});
+    own_accel *tree = accel_of(world.scene, (whit_accel_params){0}),
+              *flat = accel_of(world.scene, (whit_accel_params){.instances = WHIT_INSTANCES_OFF});
     for (int n = 0; n < 300; ++n) {
         double p[3];
         random_vec3(&random_state, p);
@@ -35,8 +34,6 @@ TEST(trees_find_the_nearest)
         assert_true(accel_distance(tree, &world.pose, p) == all);
         assert_true(fabs(accel_distance(flat, &world.pose, p) - all) < 8 * 0x1p-24);
     }
-    accel_destroy(tree);
-    accel_destroy(flat);
 }
 
 /* Distances to faces, edges and corners of a box. */

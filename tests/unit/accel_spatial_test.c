@@ -205,7 +205,7 @@ TEST(hits_are_the_same)
     struct soup soups[] = {soup_rooms(1500), soup_hair(2500, 1e-3f), soup_hair(1500, 0.05f)};
     for (size_t s = 0; s < sizeof soups / sizeof *soups; ++s) {
         own_world plain = world_of_soup(soups[s], (whit_accel_params){0});
-        struct accel *split = accel_of(
+        own_accel *split = accel_of(
             plain.scene,
             (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .leaf_limit = 1, .spatial_budget = 4});
         uint32_t found = 0;
@@ -216,7 +216,6 @@ TEST(hits_are_the_same)
             found += hit.primitive != HIT_NONE;
         }
         assert_true(found > rays / 2);
-        accel_destroy(split);
     }
 }
 

@@ -43,7 +43,7 @@ TEST(deep_trees_are_walked)
     const uint32_t depths[] = {1, 31, 32, 33, 63, 64, 65, 128, 200, 511, 512};
     for (size_t d = 0; d < sizeof depths / sizeof *depths; ++d) {
         uint32_t depth = depths[d];
-        struct accel *accel = caterpillar(depth);
+        own_accel *accel = caterpillar(depth);
         for (uint32_t way = 0; way < 2 * ORDERS * LEVELS; ++way) {
             uint32_t order = way / 2 % ORDERS, nearest = way % 2 ? depth : 0;
             struct gpu_ray ray = caterpillar_ray(depth, way % 2);
@@ -61,13 +61,12 @@ TEST(deep_trees_are_walked)
             params.any = true;
             assert_int_not_equal(trace_with(accel, params, &ray, NULL).primitive, HIT_NONE);
         }
-        accel_destroy(accel);
     }
 }
 
 TEST(too_deep_trees_are_reported)
 {
-    struct accel *accel = caterpillar(STACK_SIZE + 1);
+    own_accel *accel = caterpillar(STACK_SIZE + 1);
     for (uint32_t way = 0; way < ORDERS * LEVELS; ++way) {
         uint32_t status = 0;
         struct gpu_ray ray = caterpillar_ray(STACK_SIZE + 1, true);
@@ -79,7 +78,6 @@ TEST(too_deep_trees_are_reported)
         traverse_ray(accel, &params, &ray, &hit, NULL, &status);
         assert_int_equal(status, STATUS_NODE_STACK_OVERFLOW);
     }
-    accel_destroy(accel);
 }
 
 /* The counters of a traversal of a chain have the values that were worked out by hand. */
@@ -89,7 +87,7 @@ TEST(costs_are_those_of_the_chain)
     const struct traverse_params closest = {.order = ORDER_DISTANCE},
                                  any = {.order = ORDER_DISTANCE, .any = true},
                                  sign = {.order = ORDER_SIGN, .any = true};
-    struct accel *accel = caterpillar(DEPTH);
+    own_accel *accel = caterpillar(DEPTH);
     struct gpu_ray above = caterpillar_ray(DEPTH, true), below = caterpillar_ray(DEPTH, false);
     struct gpu_cost cost = {0};
     /* Down to triangle DEPTH; then every leaf on the stack is popped and tested: its box was met
@@ -116,13 +114,12 @@ TEST(costs_are_those_of_the_chain)
     assert_int_equal(cost.triangles, 1);
     assert_int_equal(cost.stack, 1);
     assert_int_equal(cost.depth, 1);
-    accel_destroy(accel);
 }
 
 /* A node that was pushed keeps its level, however deep the way went meanwhile. */
 TEST(levels_come_back_with_their_nodes)
 {
-    struct accel *accel = caterpillar(4);
+    own_accel *accel = caterpillar(4);
     struct gpu_ray ray = caterpillar_ray(4, true);
     struct gpu_cost cost = {0};
     /* In place of the topmost leaf, which is popped last: the deepest pair once more. */
@@ -131,13 +128,12 @@ TEST(levels_come_back_with_their_nodes)
     trace_with(accel, (struct traverse_params){.order = ORDER_DISTANCE}, &ray, &cost);
     assert_int_equal(cost.inner_nodes, 5);
     assert_int_equal(cost.depth, 4);
-    accel_destroy(accel);
 }
 
 /* A box that a clip left short of its triangle by less than the margin. */
 TEST(clipped_boxes_get_a_margin)
 {
-    struct accel *accel = caterpillar(1);
+    own_accel *accel = caterpillar(1);
     struct gpu_ray ray = {.origin = {1.9999f, -0.99999f, -1}, .dir = {0, 0, 1}, .t_max = INFINITY};
     accel->instances[0].reach = 2.0f;
     for (uint32_t i = 2; i < 4; ++i)
@@ -149,13 +145,12 @@ TEST(clipped_boxes_get_a_margin)
     for (uint32_t i = 2; i < 4; ++i)
         accel->nodes[i].lo[1] = -0.99999f + 0x1.1p-17f;
     assert_int_equal(trace(accel, &ray).primitive, HIT_NONE);
-    accel_destroy(accel);
 }
 
 /* Without instances to go through, records say whose they are. */
 TEST(flat_records_name_their_instance)
 {
-    struct accel *accel = caterpillar(1);
+    own_accel *accel = caterpillar(1);
     struct gpu_ray ray = {.origin = {0, 0, -1}, .dir = {0, 0, 1}, .t_max = INFINITY};
     struct gpu_hit plain = trace(accel, &ray), brute;
     uint32_t status = 0;
@@ -175,5 +170,4 @@ TEST(flat_records_name_their_instance)
     traverse_float(accel, ORDER_DISTANCE, &ray, false, 5, 0, &hit, NULL, &status);
     assert_int_equal(hit.instance, 7);
     assert_true(hit.ng_z == plain.ng_z);
-    accel_destroy(accel);
 }

@@ -9,7 +9,7 @@ enum { RAYS = 4000 };
 static struct gpu_cost cost_of(const struct scene *scene, const struct soup *soup,
                                whit_accel_params params, uint32_t order)
 {
-    struct accel *accel = accel_of(scene, params);
+    own_accel *accel = accel_of(scene, params);
     struct gpu_cost cost = {0};
     random_state = 7;
     for (uint32_t i = 0; i < RAYS; ++i) {
@@ -17,7 +17,6 @@ static struct gpu_cost cost_of(const struct scene *scene, const struct soup *sou
                                   : ray_from_cube(1.0f, random_point(1.0f));
         trace_with(accel, (struct traverse_params){.order = order}, &ray, &cost);
     }
-    accel_destroy(accel);
     return cost;
 }
 
