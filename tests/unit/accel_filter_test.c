@@ -388,7 +388,7 @@ static struct subject climb_for(const struct search *search)
 TEST(errors_stay_within_their_bounds)
 {
     const uint32_t climbs = cases_of(120);
-    struct rational *rational = rational_create(NULL);
+    own_rational *rational = rational_create(NULL);
     assert_non_null(rational);
     for (size_t k = 0; k < sizeof searches / sizeof *searches; ++k) {
         const struct search *search = &searches[k];
@@ -412,5 +412,4 @@ TEST(errors_stay_within_their_bounds)
         if (beyond + wrong > 0 || !(max >= search->at_least && max <= 1.0))
             fail_msg("%s", search->name);
     }
-    rational_destroy(rational);
 }

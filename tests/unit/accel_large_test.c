@@ -42,7 +42,7 @@ TEST(ten_million_triangles)
                   accel->meshes[0].build_ms * 1e-3, (clock_ms() - begin_ms) * 1e-3, peak_gib(),
                   before);
     assert_int_equal(accel->record_count, 2 * STEPS * STEPS);
-    struct rational *rational = rational_create(accel);
+    own_rational *rational = rational_create(accel);
     assert_non_null(rational);
     uint32_t other[LEVELS] = {0}, missed[LEVELS] = {0};
     random_state = 11;
@@ -59,5 +59,4 @@ TEST(ten_million_triangles)
     print_message("U11 of %u rays %u missed at watertight, %u other triangles; at exact %u, %u\n",
                   (uint32_t)RAYS, missed[0], other[0], missed[1], other[1]);
     assert_int_equal(missed[0] + missed[1] + other[1], 0);
-    rational_destroy(rational);
 }

@@ -4,7 +4,7 @@
 #include "accel_fixture.h"
 
 #include "coordinate_fixture.h"
-#include "oracle/rational.h"
+#include "owned_rational.h"
 #include "sphere_fixture.h"
 #include "unit.h"
 
@@ -280,7 +280,7 @@ static uint32_t compare_scene(const char *name, struct scene *scene, whit_accel_
                               ray_fn make, uint32_t rays, float spread)
 {
     own_world world = world_of(scene, params);
-    struct rational *rational = rational_create(world.accel);
+    own_rational *rational = rational_create(world.accel);
     struct tally tally = {0};
     bool apart = scene->sphere_total > 0;
     float moved = scene->node_count ? (float)scene->nodes[0].translation[0] : 0.0f;
@@ -300,7 +300,6 @@ static uint32_t compare_scene(const char *name, struct scene *scene, whit_accel_
                   tally.ties, tally.again);
     if (tally.wrong > 0 || tally.hits <= rays / 3)
         fail_msg("%s", name);
-    rational_destroy(rational);
     return tally.on_edges;
 }
 
@@ -371,7 +370,7 @@ TEST(spheres_are_found_by_trees_and_without)
 TEST(integers_are_for_hard_cases)
 {
     own_world world = world_of_soup(soup_sphere(24, 12), (whit_accel_params){0});
-    struct rational *random = rational_create(world.accel), *aimed = rational_create(world.accel);
+    own_rational *random = rational_create(world.accel), *aimed = rational_create(world.accel);
     random_state = 5;
     for (uint32_t i = 0; i < 20000; ++i) {
         struct vec3 origin = point_of(in_cube);
@@ -388,8 +387,6 @@ TEST(integers_are_for_hard_cases)
                   (unsigned long long)hard.exact, (unsigned long long)hard.primitives);
     assert_true(all.primitives > 20000 && all.exact * 1000 < all.primitives);
     assert_true(hard.exact > 1000);
-    rational_destroy(random);
-    rational_destroy(aimed);
 }
 
 static struct world world_of_ball(void)
@@ -405,7 +402,7 @@ TEST(doubles_leave_out_what_misses)
 {
     own_world world = world_of_ball();
     struct accel *accel = world.accel;
-    struct rational *rational = rational_create(accel);
+    own_rational *rational = rational_create(accel);
     uint32_t hits = 0, touched = 0;
     random_state = 5;
     for (uint32_t i = 0; i < 20000; ++i) {
@@ -430,7 +427,6 @@ TEST(doubles_leave_out_what_misses)
                   touched);
     assert_true(work.primitives > work.exact + 1000 && work.exact < hits + 10);
     assert_int_equal(touched, 20000);
-    rational_destroy(rational);
 }
 
 /* The least radius with which the line meets a sphere at `center`, by bisection over the bits of
@@ -464,7 +460,7 @@ TEST(doubles_leave_out_nothing_that_is_hit)
         vec3_store(accel->nodes[i].lo, vec3_make(-FLT_MAX, -FLT_MAX, -FLT_MAX));
         vec3_store(accel->nodes[i].hi, vec3_make(FLT_MAX, FLT_MAX, FLT_MAX));
     }
-    struct rational *rational = rational_create(accel);
+    own_rational *rational = rational_create(accel);
     struct gpu_triangle *sphere = &accel->triangles[0];
     uint32_t missed = 0, met = 0, asked = 0;
     random_state = 9;
@@ -490,13 +486,12 @@ TEST(doubles_leave_out_nothing_that_is_hit)
                   met);
     assert_true(asked > RAYS / 2);
     assert_int_equal(missed + met, 0);
-    rational_destroy(rational);
 }
 
 TEST(senseless_rays_hit_nothing)
 {
     own_world world = world_of_soup(soup_sphere(24, 12), (whit_accel_params){0});
-    struct rational *rational = rational_create(world.accel);
+    own_rational *rational = rational_create(world.accel);
     const struct gpu_ray rays[] = {
         {{0, 0, 0}, 0, {0, 0, 0}, INFINITY},         {{NAN, 0, 0}, 0, {0, 0, 1}, INFINITY},
         {{0, 0, 0}, 0, {0, INFINITY, 1}, INFINITY},  {{0, 0, 0}, 2, {0, 0, 1}, 1},
@@ -512,5 +507,4 @@ TEST(senseless_rays_hit_nothing)
         else
             assert_true(hit.primitive == HIT_NONE && hit.t == INFINITY);
     }
-    rational_destroy(rational);
 }

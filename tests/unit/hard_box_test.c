@@ -473,7 +473,7 @@ TEST(hits_at_the_entry_of_their_box_count)
     enum { RAYS = 12000 };
     own_world world = world_of_soup(soup_rooms(200), (whit_accel_params){.leaf_limit = 1});
     const struct accel *accel = world.accel;
-    struct rational *rational = rational_create(accel);
+    own_rational *rational = rational_create(accel);
     for (int l = 0; l < LEVELS; ++l) {
         struct ends ends = {0};
         random_state = 80;
@@ -495,7 +495,6 @@ TEST(hits_at_the_entry_of_their_box_count)
         assert_true(ends.hits > RAYS / 2);
         assert_true(ends.starts > RAYS / 8); /* not all at `watertight`: not promised */
     }
-    rational_destroy(rational);
 }
 
 /* Makes a valid ray invalid in the way `what`. */

@@ -6,7 +6,7 @@
 
 #include "accel_fixture.h"
 
-#include "oracle/rational.h"
+#include "owned_rational.h"
 #include "twin/exact.h"
 #include "twin/intersect.h"
 #include "twin/moller.h"

@@ -90,7 +90,7 @@ struct leaks {
    less than `min` wide. */
 static void count_leaks(const struct sheets *sheets, float min, struct leaks *leaks)
 {
-    struct rational *rational = rational_create(sheets->hard.accel);
+    own_rational *rational = rational_create(sheets->hard.accel);
     assert_non_null(rational);
     for (uint64_t i = 0; i < 8; ++i) {
         struct hard_ray shot =
@@ -116,7 +116,6 @@ static void count_leaks(const struct sheets *sheets, float min, struct leaks *le
             leaks->differ[l] += (hit.primitive == HIT_NONE) != (exact.primitive == HIT_NONE);
         }
     }
-    rational_destroy(rational);
 }
 
 static struct leaks leaks_of_gap(const struct gap *gap, uint32_t ulps)

@@ -210,7 +210,7 @@ TEST(no_ray_gets_through)
     uint64_t contracted_leaks = 0;
     for (size_t h = 0; h < sizeof hunts / sizeof *hunts; ++h) {
         own_world world = world_of_hunt(&hunts[h]);
-        struct rational *rational = rational_create(world.accel);
+        own_rational *rational = rational_create(world.accel);
         for (int l = 0; l < LEVELS; ++l) {
             struct tally tally = {0};
             random_state = 51 + h;
@@ -223,7 +223,6 @@ TEST(no_ray_gets_through)
                 fail_msg("%s: rays leak", hunts[h].name);
             contracted_leaks += tally.contracted_leaks;
         }
-        rational_destroy(rational);
     }
     assert_true(contracted_leaks > 0 || !has_contracted());
 }
@@ -280,7 +279,7 @@ TEST(crossings_are_odd)
     const uint32_t rays = cases_of(RAYS / 3);
     own_world world =
         world_of_soup(soup_of_mesh("torus", mesh_torus(1.0, 0.4, 48, 24)), (whit_accel_params){0});
-    struct rational *rational = rational_create(world.accel);
+    own_rational *rational = rational_create(world.accel);
     for (int l = 0; l < LEVELS; ++l) {
         struct parity parity = {0};
         random_state = 5;
@@ -297,7 +296,6 @@ TEST(crossings_are_odd)
         assert_int_equal(parity.exact_wrong + parity.wrong, 0);
         assert_true(!levels[l].exact || parity.other == 0);
     }
-    rational_destroy(rational);
 }
 
 /* W6: at a T-junction a vertex lies beside the edge of a larger triangle, by rounding, so there is
@@ -313,7 +311,7 @@ TEST(only_t_junctions_leak)
     soup_set(&soup, 1, a, middle, d);
     soup_set(&soup, 2, middle, c, d);
     own_world world = world_of_soup(soup, (whit_accel_params){0});
-    struct rational *rational = rational_create(world.accel);
+    own_rational *rational = rational_create(world.accel);
     for (int l = 0; l < LEVELS; ++l) {
         struct tally seam = {0}, sound = {0};
         random_state = 6;
@@ -335,7 +333,6 @@ TEST(only_t_junctions_leak)
         assert_true(!levels[l].watertight || sound.leaks == 0);
         assert_int_equal(sound.exact_leaks, 0);
     }
-    rational_destroy(rational);
 }
 
 /* W9: two instances are halves of a floor, side by side. The ray is rounded separately in each
@@ -356,7 +353,7 @@ TEST(edges_between_instances_are_counted)
         scene_put_again(scene, mesh, &(struct put){.matrix = &places[i]});
     own_world world = world_of(scene, (whit_accel_params){0});
     world.soup = soup;
-    struct rational *rational = rational_create(world.accel);
+    own_rational *rational = rational_create(world.accel);
     for (int l = 0; l < LEVELS; ++l) {
         struct tally tally = {0};
         random_state = 9;
@@ -372,5 +369,4 @@ TEST(edges_between_instances_are_counted)
         }
         tell(&levels[l], "W9 edge between two instances", &tally);
     }
-    rational_destroy(rational);
 }

@@ -218,7 +218,7 @@ static void check_bounds(const struct subject *s, const struct truth *truth, str
 TEST(spheres_are_met_as_fractions_say)
 {
     enum { SUBJECTS = 10000 };
-    struct rational *rational = rational_create(NULL);
+    own_rational *rational = rational_create(NULL);
     struct truth truth;
     uint32_t touching = 0, on_surface = 0, equal_keys = 0;
     assert_non_null(rational);
@@ -255,7 +255,6 @@ TEST(spheres_are_met_as_fractions_say)
     assert_true(touching > SUBJECTS * 9 / 10 && on_surface > SUBJECTS / 2 &&
                 equal_keys > SUBJECTS / 2);
     truth_clear(&truth);
-    rational_destroy(rational);
 }
 
 /* ---- Known answers ---- */
@@ -285,7 +284,7 @@ TEST(rays_along_axes_meet_both_ends)
         {upright(3 * 0x1p-149f, 0x1p-149f, 0, 0, 0x1p-149f), true, true, true, 2, 4},
         {upright(0x1p-149f, 0x1p-149f, 0, 0, 1), true, true, true, 0, 0x1p-148f},
     };
-    struct rational *rational = rational_create(NULL);
+    own_rational *rational = rational_create(NULL);
     struct rational_chord chord;
     assert_non_null(rational);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
@@ -300,12 +299,11 @@ TEST(rays_along_axes_meet_both_ends)
         if (!right)
             fail_msg("row %zu of cases", i);
     }
-    rational_destroy(rational);
 }
 
 TEST(keys_end_with_the_floats)
 {
-    struct rational *rational = rational_create(NULL);
+    own_rational *rational = rational_create(NULL);
     struct rational_chord chord;
     assert_non_null(rational);
     struct subject s = upright(FLT_MAX, 0x1p104f, 0, 0, 1);
@@ -326,5 +324,4 @@ TEST(keys_end_with_the_floats)
     assert_false(meet(rational, &s, &chord));
     s = upright(FLT_MAX, FLT_MAX, 0x1p-149f, -FLT_MAX, FLT_MAX);
     assert_true(meet(rational, &s, &chord) && chord.near_key == 1.0f && chord.far_key == 3.0f);
-    rational_destroy(rational);
 }

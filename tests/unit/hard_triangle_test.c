@@ -204,7 +204,7 @@ static void tell(const char *name, const struct tally *tally)
 TEST(triangles_are_met_as_fractions_say)
 {
     const uint32_t cases = cases_of(80000);
-    struct rational *rational = rational_create(NULL);
+    own_rational *rational = rational_create(NULL);
     assert_non_null(rational);
     for (size_t i = 0; i < sizeof triangle_kinds / sizeof *triangle_kinds; ++i) {
         const struct triangle_kind *kind = &triangle_kinds[i];
@@ -226,7 +226,6 @@ TEST(triangles_are_met_as_fractions_say)
             assert_true(!(kind->what & GOOD) || tally.of[l].over_4_ulp <= tally.met / 500);
         }
     }
-    rational_destroy(rational);
 }
 
 /* Finds the key of the hit with a large triangle across the ray; false: the ray misses it. */
@@ -238,7 +237,7 @@ static bool key_of(struct rational *rational, float z, float origin, float dir, 
 
 TEST(keys_end_with_the_floats)
 {
-    struct rational *rational = rational_create(NULL);
+    own_rational *rational = rational_create(NULL);
     float key = 0.0f;
     assert_true(key_of(rational, FLT_MAX, -0x1.fffffep102f, 1.0f, &key));
     assert_true(key == FLT_MAX);
@@ -250,7 +249,6 @@ TEST(keys_end_with_the_floats)
     assert_true(key == 0.0f && !signbit(key));
     assert_true(key_of(rational, 3.0f, 1.0f, -0.5f, &key)); /* behind */
     assert_true(key == -4.0f);
-    rational_destroy(rational);
 }
 
 /* T6: hits at both ends of the interval count, for closest-hit and any-hit. The watertight test
@@ -402,7 +400,7 @@ static struct gpu_ray make_edge_apart(bool towards, struct vec3 v[3])
 TEST(edges_apart_do_not_meet)
 {
     enum { RAYS = 100000 };
-    struct rational *rational = rational_create(NULL);
+    own_rational *rational = rational_create(NULL);
     assert_non_null(rational);
     for (int towards = 0; towards < 2; ++towards) {
         uint32_t met[LEVELS] = {0}, fast = 0, exactly = 0, sure = 0;
@@ -429,7 +427,6 @@ TEST(edges_apart_do_not_meet)
         assert_int_equal(exactly + met[1] + sure, 0);
         assert_true(fast > 100 && met[0] * 4 < fast);
     }
-    rational_destroy(rational);
 }
 
 /* T11: with reversed winding the same rays hit at the same t. (T12 is part of is_sound.) */

@@ -4,7 +4,7 @@
 #include "ray_fixture.h"
 #include "unit.h"
 
-#include "oracle/rational.h"
+#include "owned_rational.h"
 #include "render_scenes.h"
 #include "sphere_fixture.h"
 
@@ -16,7 +16,7 @@ enum { LEVELS = 3 };
 static uint32_t count_unlike_rational(const struct fixture *f, const struct gpu_ray *rays,
                                       const struct gpu_hit *hits)
 {
-    struct rational *rational = rational_create(f->accel);
+    own_rational *rational = rational_create(f->accel);
     assert_non_null(rational);
     uint32_t bad = 0, on_edges = 0;
     for (uint32_t i = 0; i < RAYS; ++i) {
@@ -28,7 +28,6 @@ static uint32_t count_unlike_rational(const struct fixture *f, const struct gpu_
     }
     print_message("  %u of %u unlike rational arithmetic, %u exactly on edges\n", bad, RAYS,
                   on_edges);
-    rational_destroy(rational);
     return bad;
 }
 
