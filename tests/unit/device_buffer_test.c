@@ -27,9 +27,8 @@ TEST(sizes_are_rounded_up)
 {
     const uint64_t sizes[][2] = {{0, 16}, {1, 16}, {16, 16}, {17, 32}, {4095, 4096}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
-        struct buffer *buffer = buffer_make(device, sizes[i][0], BUFFER_STORAGE, "size");
+        own_buffer *buffer = buffer_make(device, sizes[i][0], BUFFER_STORAGE, "size");
         assert_int_equal(buffer_size(buffer), sizes[i][1]);
-        buffer_destroy(buffer);
     }
 }
 
@@ -41,9 +40,9 @@ TEST(texel_buffers_are_of_one_kind_for_lavapipe)
     bool is_cpu = device_get_info(device)->kind == WHIT_DEVICE_CPU;
     for (uint64_t around = 0; around <= 1 << 18; around += 1 << 15) {
         for (uint64_t size = around; size < around + 1024; size += 16) {
-            struct buffer *storage = buffer_make(device, size, BUFFER_STORAGE, "storage");
+            own_buffer *storage = buffer_make(device, size, BUFFER_STORAGE, "storage");
             assert_int_equal(created_bytes, buffer_size(storage));
-            struct buffer *texels = buffer_make(device, size, BUFFER_TEXELS, "texels");
+            own_buffer *texels = buffer_make(device, size, BUFFER_TEXELS, "texels");
             assert_int_equal(buffer_size(texels), buffer_size(storage));
             assert_int_equal(viewed_bytes, created_bytes);
             assert_true(created_bytes >= buffer_size(texels));
@@ -53,8 +52,6 @@ TEST(texel_buffers_are_of_one_kind_for_lavapipe)
             } else {
                 assert_int_equal(created_bytes, buffer_size(texels));
             }
-            buffer_destroy(storage);
-            buffer_destroy(texels);
         }
     }
 }
@@ -64,14 +61,13 @@ TEST(starts_as_zeros)
     uint8_t bytes[4096];
     for (int turn = 0; turn < 8; ++turn) {
         uint32_t uses = (turn & 1 ? BUFFER_HOST : BUFFER_STORAGE) | BUFFER_ZEROED;
-        struct buffer *buffer = buffer_make(device, sizeof bytes, uses, "zeros");
+        own_buffer *buffer = buffer_make(device, sizeof bytes, uses, "zeros");
         memset(bytes, 0xa5, sizeof bytes);
         assert_int_equal(buffer_read(buffer, 0, bytes, sizeof bytes), WHIT_OK);
         for (size_t i = 0; i < sizeof bytes; ++i)
             assert_int_equal(bytes[i], 0);
         memset(bytes, 0xa5, sizeof bytes); /* the next buffer may get this memory */
         assert_int_equal(buffer_write(buffer, 0, bytes, sizeof bytes), WHIT_OK);
-        buffer_destroy(buffer);
     }
 }
 
@@ -81,11 +77,10 @@ TEST(others_are_poisoned_in_tests)
 {
     uint8_t bytes[256] = {0};
     assert_non_null(getenv("WHIT_POISON"));
-    struct buffer *buffer = buffer_make(device, sizeof bytes, BUFFER_STORAGE, "poisoned");
+    own_buffer *buffer = buffer_make(device, sizeof bytes, BUFFER_STORAGE, "poisoned");
     assert_int_equal(buffer_read(buffer, 0, bytes, sizeof bytes), WHIT_OK);
     for (size_t i = 0; i < sizeof bytes; ++i)
         assert_int_equal(bytes[i], 0xa5);
-    buffer_destroy(buffer);
 }
 
 TEST(keeps_what_is_written_where)
@@ -96,7 +91,7 @@ TEST(keeps_what_is_written_where)
     for (size_t i = 0; i < LARGE_BYTES; ++i)
         bytes[i] = (uint8_t)(i * 2654435761u >> 13);
     for (size_t i = 0; i < 2; ++i) {
-        struct buffer *buffer = buffer_make(device, LARGE_BYTES, uses[i], "large");
+        own_buffer *buffer = buffer_make(device, LARGE_BYTES, uses[i], "large");
         assert_int_equal(buffer_write(buffer, 0, bytes, LARGE_BYTES), WHIT_OK);
         memset(back, 0, LARGE_BYTES);
         assert_int_equal(buffer_read(buffer, 0, back, LARGE_BYTES), WHIT_OK);
@@ -108,7 +103,6 @@ TEST(keeps_what_is_written_where)
         assert_memory_equal(back + 1001 - 77, bytes, 20 << 20);
         size_t end = 1001 + (20 << 20);
         assert_memory_equal(back + end - 77, bytes + end, LARGE_BYTES - end);
-        buffer_destroy(buffer);
     }
     free(bytes);
     free(back);
@@ -116,7 +110,7 @@ TEST(keeps_what_is_written_where)
 
 TEST(refuses_access_outside)
 {
-    struct buffer *buffer = buffer_make(device, 64, BUFFER_STORAGE, "small");
+    own_buffer *buffer = buffer_make(device, 64, BUFFER_STORAGE, "small");
     uint8_t bytes[65] = {0};
     assert_int_equal(buffer_write(buffer, 0, bytes, 65), WHIT_ERROR_USAGE);
     assert_int_equal(buffer_write(buffer, 63, bytes, 2), WHIT_ERROR_USAGE);
@@ -125,7 +119,6 @@ TEST(refuses_access_outside)
     assert_int_equal(buffer_read(buffer, 2, bytes, UINT64_MAX), WHIT_ERROR_USAGE);
     assert_int_equal(buffer_read(buffer, 64, bytes, 0), WHIT_OK);
     assert_int_equal(buffer_write(buffer, 60, bytes, 4), WHIT_OK);
-    buffer_destroy(buffer);
 }
 
 TEST(refuses_what_is_over_the_limits)

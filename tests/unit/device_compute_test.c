@@ -28,7 +28,7 @@ WRAPPED(whit_result, spirv_evaluate, const uint32_t *words, size_t word_count, c
 static struct pipeline_info check_constants(const uint32_t spec[3], uint32_t added)
 {
     enum { COUNT = 1000 };
-    struct buffer *buffer =
+    own_buffer *buffer =
         buffer_make(device, 4 * COUNT + 4, BUFFER_STORAGE | BUFFER_ZEROED, "values");
     struct pipeline_params params = affine_params(spec);
     struct kernel_run run = kernel_make(device, &params, &buffer);
@@ -42,7 +42,6 @@ static struct pipeline_info check_constants(const uint32_t spec[3], uint32_t add
     assert_int_equal(values[COUNT], 0);
     pipeline_get_info(run.pipeline, &info);
     kernel_free(&run);
-    buffer_destroy(buffer);
     return info;
 }
 
@@ -88,9 +87,9 @@ TEST(texels_equal_storage)
     assert_true(rows && sums);
     for (uint32_t i = 0; i < 4 * ROWS; ++i)
         rows[i / 4][i % 4] = i * 2654435761u; /* all bit patterns, also of NaNs */
-    struct buffer *in =
+    own_buffer *in =
         buffer_make(device, ROWS * sizeof *rows, BUFFER_STORAGE | BUFFER_TEXELS, "rows");
-    struct buffer *out = buffer_make(device, ROWS * sizeof *sums, BUFFER_STORAGE, "sums");
+    own_buffer *out = buffer_make(device, ROWS * sizeof *sums, BUFFER_STORAGE, "sums");
     assert_int_equal(buffer_write(in, 0, rows, ROWS * sizeof *rows), WHIT_OK);
 
     const enum binding_kind bindings[] = {BINDING_STORAGE, BINDING_NONE, BINDING_TEXELS,
@@ -107,8 +106,6 @@ TEST(texels_equal_storage)
     for (uint32_t i = 0; i < 4 * ROWS; ++i)
         assert_int_equal(sums[i / 4][i % 4], rows[i / 4][i % 4] * 2 + 1);
     kernel_free(&run);
-    buffer_destroy(in);
-    buffer_destroy(out);
     free(rows);
     free(sums);
 }
@@ -134,8 +131,8 @@ static uint32_t read_word(struct buffer *buffer, uint64_t offset_bytes)
 /* The arguments of the dispatch are written on the device in the same submission, at an offset. */
 TEST(indirect_dispatch_takes_its_arguments)
 {
-    struct buffer *count = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
-    struct buffer *arguments = buffer_make(device, 64, BUFFER_INDIRECT, "arguments");
+    own_buffer *count = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
+    own_buffer *arguments = buffer_make(device, 64, BUFFER_INDIRECT, "arguments");
     struct kernel_run run = count_make(count);
     struct commands *commands = commands_make(device);
     assert_int_equal(commands_begin(commands), WHIT_OK);
@@ -149,14 +146,12 @@ TEST(indirect_dispatch_takes_its_arguments)
     assert_int_equal(read_word(count, 0), 5 * 3 * 3);
     commands_destroy(commands);
     kernel_free(&run);
-    buffer_destroy(count);
-    buffer_destroy(arguments);
 }
 
 TEST(fill_and_copy_keep_to_their_range)
 {
-    struct buffer *a = buffer_make(device, 64, BUFFER_STORAGE | BUFFER_ZEROED, "a");
-    struct buffer *b = buffer_make(device, 64, BUFFER_HOST | BUFFER_ZEROED, "b");
+    own_buffer *a = buffer_make(device, 64, BUFFER_STORAGE | BUFFER_ZEROED, "a");
+    own_buffer *b = buffer_make(device, 64, BUFFER_HOST | BUFFER_ZEROED, "b");
     struct commands *commands = commands_make(device);
     assert_int_equal(commands_begin(commands), WHIT_OK);
     commands_fill(commands, a, 8, 16, 0x12345678u);
@@ -171,8 +166,6 @@ TEST(fill_and_copy_keep_to_their_range)
     for (size_t i = 0; i < 16; ++i)
         assert_int_equal(words[i], i >= 9 && i < 12 ? 0x12345678u : 0);
     commands_destroy(commands);
-    buffer_destroy(a);
-    buffer_destroy(b);
 }
 
 static struct kernel_run spin_make(struct buffer *buffer)
@@ -220,7 +213,7 @@ static void time_two_spans(struct commands *commands, const struct kernel_run *r
 
 TEST(spans_are_timed)
 {
-    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
+    own_buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
     struct kernel_run run = spin_make(buffer);
     struct commands *commands = commands_make(device);
     assert_int_equal(commands_span_count(commands), 0);
@@ -251,7 +244,6 @@ TEST(spans_are_timed)
     assert_int_equal(commands_span_count(commands), COMMANDS_SPANS);
     commands_destroy(commands);
     kernel_free(&run);
-    buffer_destroy(buffer);
 }
 
 /* Stands for a device that does not finish its work (-Wl,--wrap): waiting for it times out. */
@@ -267,7 +259,7 @@ WRAPPED(VkResult, vkWaitForFences, VkDevice vk, uint32_t count, const VkFence *f
 
 TEST(wait_obeys_its_limit)
 {
-    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
+    own_buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
     struct kernel_run run = spin_make(buffer);
     struct commands *commands = commands_make(device);
     assert_int_equal(commands_wait(commands, 0.0), WHIT_OK); /* nothing to wait for */
@@ -288,12 +280,11 @@ TEST(wait_obeys_its_limit)
     assert_int_equal(commands_submit(commands), WHIT_OK);
     commands_destroy(commands); /* in flight: waits */
     kernel_free(&run);
-    buffer_destroy(buffer);
 }
 
 TEST(recording_errors_surface_at_submit)
 {
-    struct buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
+    own_buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
     struct kernel_run run = count_make(buffer);
     struct commands *commands = commands_make(device);
     const uint32_t word = 0;
@@ -350,12 +341,11 @@ TEST(recording_errors_surface_at_submit)
     assert_int_equal(read_word(buffer, 0), 7);
     commands_destroy(commands);
     kernel_free(&run);
-    buffer_destroy(buffer);
 }
 
 TEST(later_submissions_see_earlier_ones)
 {
-    struct buffer *buffer = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
+    own_buffer *buffer = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
     struct kernel_run run = count_make(buffer);
     struct commands *commands[2] = {commands_make(device), commands_make(device)};
     for (int i = 0; i < 20; ++i) {
@@ -372,7 +362,6 @@ TEST(later_submissions_see_earlier_ones)
     }
     assert_int_equal(read_word(buffer, 0), 200);
     kernel_free(&run);
-    buffer_destroy(buffer);
 }
 
 TEST(refuses_wrong_pipelines_and_sets)
@@ -389,7 +378,7 @@ TEST(refuses_wrong_pipelines_and_sets)
 
     params = count_params();
     assert_int_equal(pipeline_create(device, &params, &pipeline), WHIT_OK);
-    struct buffer *texels = buffer_make(device, 16, BUFFER_TEXELS, "texels");
+    own_buffer *texels = buffer_make(device, 16, BUFFER_TEXELS, "texels");
     struct buffer *none = NULL;
     struct binding_set *set;
     messages = (struct messages){0};
@@ -398,7 +387,6 @@ TEST(refuses_wrong_pipelines_and_sets)
     assert_int_equal(binding_set_create(pipeline, &none, 1, &set), WHIT_ERROR_USAGE);
     assert_int_equal(binding_set_create(pipeline, &texels, 0, &set), WHIT_ERROR_USAGE);
     assert_int_equal(messages.errors, 3);
-    buffer_destroy(texels);
     pipeline_destroy(pipeline);
 }
 

@@ -69,6 +69,15 @@ static inline void kernel_free(struct kernel_run *run)
     pipeline_destroy(run->pipeline);
 }
 
+static inline void drop_buffer(struct buffer **at)
+{
+    buffer_destroy(*at);
+}
+
+/* Freed at the end of its block, where its device must still exist:
+   own_buffer *buffer = buffer_make(...); */
+#define own_buffer __attribute__((cleanup(drop_buffer))) struct buffer
+
 static inline struct buffer *buffer_make(struct device *device, uint64_t size_bytes, uint32_t uses,
                                          const char *name)
 {
@@ -111,8 +120,8 @@ static inline void kernel_answer_as(struct device *device, const uint32_t *spec,
                                     uint32_t count, const void *cases, size_t case_bytes,
                                     void *answers, size_t answer_bytes)
 {
-    struct buffer *in = buffer_make(device, count * case_bytes, BUFFER_STORAGE, "cases");
-    struct buffer *out = buffer_make(device, count * answer_bytes, BUFFER_STORAGE, "answers");
+    own_buffer *in = buffer_make(device, count * case_bytes, BUFFER_STORAGE, "cases");
+    own_buffer *out = buffer_make(device, count * answer_bytes, BUFFER_STORAGE, "answers");
     assert_int_equal(buffer_write(in, 0, cases, count * case_bytes), WHIT_OK);
     struct pipeline_params params = storage_params(spirv, spirv_bytes, 2, "answers");
     params.spec = spec;
@@ -121,8 +130,6 @@ static inline void kernel_answer_as(struct device *device, const uint32_t *spec,
     kernel_dispatch(device, &run, NULL, 0, (count + 63) / 64);
     assert_int_equal(buffer_read(out, 0, answers, count * answer_bytes), WHIT_OK);
     kernel_free(&run);
-    buffer_destroy(in);
-    buffer_destroy(out);
 }
 
 static inline void kernel_answer(struct device *device, const uint32_t *spirv, size_t spirv_bytes,

@@ -21,10 +21,9 @@ static void use(void *context)
 {
     struct user *user = context;
     while (!atomic_load(user->stop)) {
-        struct buffer *buffer = NULL;
+        own_buffer *buffer = NULL;
         if (buffer_create(user->device, 256, BUFFER_STORAGE, "one of many", &buffer) == WHIT_OK)
             ++user->made;
-        buffer_destroy(buffer);
     }
 }
 

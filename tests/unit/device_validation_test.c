@@ -9,8 +9,8 @@
 static void run_affine(struct device *device, bool with_barrier)
 {
     const uint32_t spec[] = {64, 1, 0}, push[] = {64, 0};
-    struct buffer *values = buffer_make(device, 256, BUFFER_STORAGE, "values");
-    struct buffer *copy = buffer_make(device, 256, BUFFER_HOST, "copy");
+    own_buffer *values = buffer_make(device, 256, BUFFER_STORAGE, "values");
+    own_buffer *copy = buffer_make(device, 256, BUFFER_HOST, "copy");
     struct pipeline_params params = affine_params(spec);
     struct kernel_run run = kernel_make(device, &params, &values);
     struct commands *commands = commands_make(device);
@@ -30,8 +30,6 @@ static void run_affine(struct device *device, bool with_barrier)
         assert_int_equal(word, 63);
     commands_destroy(commands);
     kernel_free(&run);
-    buffer_destroy(values);
-    buffer_destroy(copy);
 }
 
 TEST(normal_use_is_silent)
