@@ -30,7 +30,7 @@ TEST_IN(kernels_without_a_user_are_those_of_the_build, compiler_begin, compiler_
         char name[64];
         snprintf(name, sizeof name, "kernel/%s.comp", kernels[i].name);
         const struct shader_request request = {.kernel = name};
-        struct shader_code code;
+        own_shader_code code = {0};
         assert_int_equal(shader_compile(compiler, NULL, &request, &code, &errors), WHIT_OK);
         char *built = disassemble(kernels[i].words, kernels[i].bytes);
         char *made = disassemble(code.words, code.bytes);
@@ -40,7 +40,6 @@ TEST_IN(kernels_without_a_user_are_those_of_the_build, compiler_begin, compiler_
         assert_true(code.instructions > 10);
         free(built);
         free(made);
-        shader_code_free(&code);
     }
     assert_string_equal(messages.text, "");
 }
@@ -70,7 +69,7 @@ TEST_IN(what_has_no_portable_form_is_named, compiler_begin, compiler_end)
     for (size_t i = 0; i < sizeof calls / sizeof *calls; ++i) {
         char text[256], why[PORTABLE_WHY_BYTES], name[64] = "";
         const struct portable_params params = {.own_division = true, .own_comparison = true};
-        struct shader_code code;
+        own_shader_code code = {0};
         uint32_t *words;
         size_t count;
         const char *at = strncmp(calls[i], "float(", 6) == 0 ? calls[i] + 6 : calls[i];
@@ -83,7 +82,6 @@ TEST_IN(what_has_no_portable_form_is_named, compiler_begin, compiler_end)
             shader_make_portable(&params, code.words, code.bytes / 4, &words, &count, why),
             WHIT_ERROR_INPUT);
         assert_string_equal(why, name);
-        shader_code_free(&code);
     }
 }
 
@@ -124,7 +122,7 @@ TEST_IN(comparisons_are_left_to_devices_that_are_right, compiler_begin, compiler
     for (size_t i = 0; i < 2 * sizeof all / sizeof *all; ++i) {
         const struct portable_params params = {.own_division = true, .own_comparison = i & 1};
         char text[128], why[PORTABLE_WHY_BYTES];
-        struct shader_code code;
+        own_shader_code code = {0};
         uint32_t *words, functions, all_functions;
         size_t count;
         snprintf(text, sizeof text, "bool f(float x, float y) { return %s; }\n", all[i / 2].text);
@@ -139,7 +137,6 @@ TEST_IN(comparisons_are_left_to_devices_that_are_right, compiler_begin, compiler
         assert_int_equal(after, params.own_comparison ? before : 0);
         assert_int_equal(all_functions > functions, !params.own_comparison);
         free(words);
-        shader_code_free(&code);
     }
 }
 

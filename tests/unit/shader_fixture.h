@@ -130,6 +130,9 @@ static inline void assert_valid(const struct shader_code *code)
     spvContextDestroy(context);
 }
 
+/* Freed at the end of its block. */
+#define own_shader_code __attribute__((cleanup(shader_code_free))) struct shader_code
+
 /* Fails with what was logged. */
 static inline struct shader_code must_compile(const char *a)
 {

@@ -69,7 +69,7 @@ static const struct {
 TEST_IN(loops_have_fuel_and_lines, compiler_begin, compiler_end)
 {
     for (size_t i = 0; i < sizeof looping / sizeof *looping; ++i) {
-        struct shader_code code = must_compile(looping[i].content), trusted;
+        own_shader_code code = must_compile(looping[i].content), trusted = {0};
         assert_valid(&code);
         if (code.loop_count != looping[i].count)
             fail_msg("%u loops: %s", code.loop_count, looping[i].content);
@@ -91,8 +91,6 @@ TEST_IN(loops_have_fuel_and_lines, compiler_begin, compiler_end)
         assert_int_equal(count(with, "OpUnreachable"), 0);
         free(with);
         free(without);
-        shader_code_free(&code);
-        shader_code_free(&trusted);
     }
 }
 
@@ -106,17 +104,16 @@ TEST_IN(loops_of_whit_have_no_fuel, compiler_begin, compiler_end)
                                               37};
     struct shader_request request = {.kernel = "kernel/test.comp", .kernel_text = kernel};
     struct shader_text text;
-    struct shader_code code;
+    own_shader_code code = {0};
     assert_int_equal(shader_text_from(NULL, &source, 1, &text, NULL), WHIT_OK);
     assert_int_equal(shader_compile(compiler, &text, &request, &code, &errors), WHIT_OK);
     assert_int_equal(code.loop_count, 0);
-    shader_code_free(&code);
     shader_text_free(&text);
 }
 
 TEST_IN(loops_in_included_files_have_their_place, compiler_begin, compiler_end)
 {
-    struct shader_code code;
+    own_shader_code code = {0};
     assert_int_equal(
         compile_files("// one\n#include \"b.glsl\"\nfloat f(float x, int n) {\n"
                       " while (x > 1.0) x = g(x);\n return x; }\n",
@@ -128,7 +125,6 @@ TEST_IN(loops_in_included_files_have_their_place, compiler_begin, compiler_end)
     const struct shader_loop *a = &code.loops[first ? 1 : 0], *b = &code.loops[first ? 0 : 1];
     assert_true(a->file == 0 && a->line == 4 && b->file == 1 && b->line == 5);
     assert_valid(&code);
-    shader_code_free(&code);
 }
 
 /* ---- Bounds ---- */
@@ -198,10 +194,8 @@ static bool has_constant(const struct shader_code *code, uint32_t value)
 
 TEST_IN(the_last_element_is_the_limit, compiler_begin, compiler_end)
 {
-    struct shader_code code =
-        must_compile("float f(float x, int n) { float a[78]; return a[n]; }\n");
+    own_shader_code code = must_compile("float f(float x, int n) { float a[78]; return a[n]; }\n");
     assert_true(has_constant(&code, 77) && has_constant(&code, 78) && !has_constant(&code, 79));
-    shader_code_free(&code);
 }
 
 /* ---- Refusals ---- */
@@ -247,14 +241,13 @@ TEST_IN(what_users_may_not_do_is_refused, compiler_begin, compiler_end)
         }
     }
     /* A constant table is in the module once, however often it is indexed. */
-    struct shader_code code = must_compile(
+    own_shader_code code = must_compile(
         "const mat4 t[128] = mat4[128](\n"
 #define ROW  "mat4(1),mat4(2),mat4(3),mat4(4)"
 #define ROWS ROW "," ROW "," ROW "," ROW "," ROW "," ROW "," ROW "," ROW
         ROWS "," ROWS "," ROWS "," ROWS
         ");\nfloat f(float x, int n) { return t[n][0].x + t[n + 1][1].y + t[n + 2][2].z; }\n");
     assert_valid(&code);
-    shader_code_free(&code);
 }
 
 TEST_IN(what_is_not_for_users_is_not_called, compiler_begin, compiler_end)
@@ -294,7 +287,7 @@ TEST_IN(what_is_not_for_users_is_not_called, compiler_begin, compiler_end)
 
 TEST_IN(operations_stay_exact, compiler_begin, compiler_end)
 {
-    struct shader_code code = must_compile("float f(float x, int n) { return x * 3.0 + 1.0; }\n");
+    own_shader_code code = must_compile("float f(float x, int n) { return x * 3.0 + 1.0; }\n");
     char *text = disassemble(code.words, code.bytes);
     assert_true(count(text, "NoContraction") == 2);
     assert_int_equal(count(text, "OpLine") + count(text, "OpName") + count(text, "OpString"), 0);
@@ -302,5 +295,4 @@ TEST_IN(operations_stay_exact, compiler_begin, compiler_end)
     for (size_t at = SPV_HEADER_WORDS; at < code.bytes / 4; at += spv_length(code.words + at))
         assert_false(spv_op(code.words + at) >= OP_SOURCE_CONTINUED &&
                      spv_op(code.words + at) <= OP_LINE);
-    shader_code_free(&code);
 }

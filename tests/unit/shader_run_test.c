@@ -48,13 +48,12 @@ TEST_IN(loops_end, compiler_begin, compiler_end)
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         struct answer answer;
-        struct shader_code code = must_compile(cases[i].content);
+        own_shader_code code = must_compile(cases[i].content);
         run(&code, 1, (const int32_t[][2]){{0, 0}}, &answer);
         if (answer.value != cases[i].value)
             fail_msg("%u: %s", answer.value, cases[i].content);
         assert_true(answer.loop <= code.loop_count);
         assert_int_equal(answer.loop ? code.loops[answer.loop - 1].line : 0, cases[i].line);
-        shader_code_free(&code);
     }
 }
 
@@ -76,12 +75,11 @@ TEST_IN(indices_mean_the_last_element, compiler_begin, compiler_end)
     };
     for (size_t i = 0; i < sizeof contents / sizeof *contents; ++i) {
         struct answer answers[6];
-        struct shader_code code = must_compile(contents[i]);
+        own_shader_code code = must_compile(contents[i]);
         run(&code, 6, cases, answers);
         assert_int_equal(answers[0].value, 1);
         for (int j = 1; j < 6; ++j)
             assert_int_equal(answers[j].value, 4);
-        shader_code_free(&code);
     }
 }
 
@@ -126,7 +124,7 @@ TEST_IN(loops_are_left_by_returns, compiler_begin, compiler_end)
     static const int32_t cases[5][2] = {{10, 0}, {10, 1}, {10, 2}, {10, 3}, {10, 4}};
     for (size_t i = 0; i < sizeof leaving / sizeof *leaving; ++i) {
         for (int trust = 0; trust < 2; ++trust) {
-            struct shader_code code;
+            own_shader_code code = {0};
             struct answer answers[5];
             assert_int_equal(compile_files(leaving[i].content, NULL, trust, &code), WHIT_OK);
             assert_valid(&code);
@@ -146,7 +144,6 @@ TEST_IN(loops_are_left_by_returns, compiler_begin, compiler_end)
             struct pipeline_info info;
             if (!pipeline_count(&params, &info))
                 fail_msg("not evaluated: %s", leaving[i].content);
-            shader_code_free(&code);
         }
     }
 }
@@ -166,7 +163,7 @@ TEST_IN(variables_begin_as_zero, compiler_begin, compiler_end)
     };
     for (size_t i = 0; i < sizeof contents / sizeof *contents; ++i) {
         struct answer answers[2];
-        struct shader_code code = must_compile(contents[i]);
+        own_shader_code code = must_compile(contents[i]);
         assert_valid(&code);
         run(&code, 2, (const int32_t[][2]){{1, 1}, {30, 2}}, answers);
         if (answers[0].value != 1 || answers[1].value != 30)
@@ -175,7 +172,6 @@ TEST_IN(variables_begin_as_zero, compiler_begin, compiler_end)
         struct pipeline_info info;
         if (!pipeline_count(&params, &info))
             fail_msg("not evaluated: %s", contents[i]);
-        shader_code_free(&code);
     }
 }
 
@@ -188,10 +184,9 @@ TEST_IN(kernels_are_evaluated, compiler_begin, compiler_end)
         "float f(float x, int n) { return float(cases[n].x); }\n",
     };
     for (size_t i = 0; i < sizeof contents / sizeof *contents; ++i) {
-        struct shader_code code = must_compile(contents[i]);
+        own_shader_code code = must_compile(contents[i]);
         struct pipeline_params params = storage_params(code.words, code.bytes, 2, "user");
         struct pipeline_info info;
         assert_true(pipeline_count(&params, &info));
-        shader_code_free(&code);
     }
 }
