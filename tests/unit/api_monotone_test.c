@@ -53,10 +53,8 @@ static struct error measure(const whit_image *reference, const whit_renderer_par
 {
     assert_int_equal(whit_renderer_set_view(renderer, view), WHIT_OK);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    whit_image *image = image_of(renderer, WHIT_AOV_COLOR);
-    struct error error = error_of(reference, image);
-    whit_image_destroy(image);
-    return error;
+    own_whit_image *image = image_of(renderer, WHIT_AOV_COLOR);
+    return error_of(reference, image);
 }
 
 /* ---- Rises ---- */
@@ -86,7 +84,7 @@ static void compare(struct tally *tally, const char *name, const char *knob, uin
 static void check_knob(const char *name, bool depth, struct tally *tally)
 {
     static const uint32_t samples[] = {1, 4, 16, SAMPLES}, depths[] = {0, 1, 2, 4, 8, 16};
-    whit_image *reference = reference_of(depth ? 1 : SAMPLES);
+    own_whit_image *reference = reference_of(depth ? 1 : SAMPLES);
     struct error before = {.linear = INFINITY, .shown = INFINITY};
     for (size_t i = 0; i < (depth ? sizeof depths : sizeof samples) / sizeof *samples; ++i) {
         whit_renderer_params view = usual;
@@ -96,7 +94,6 @@ static void check_knob(const char *name, bool depth, struct tally *tally)
         compare(tally, name, depth ? "depth" : "aa", *knob, &before, &error);
         before = error;
     }
-    whit_image_destroy(reference);
 }
 
 TEST_IN(error_falls_or_it_is_said_why, device_begin, device_end)

@@ -19,7 +19,7 @@ TEST(draws_pictures_and_ray_trees)
     params.progress = note_progress;
     params.progress_user = &last;
     whit_reference *reference = NULL;
-    whit_image *color = NULL, *ids = NULL;
+    own_whit_image *color = NULL, *ids = NULL;
     assert_int_equal(whit_reference_create(accel, &params, 0, &reference), WHIT_OK);
     assert_int_equal(whit_reference_render(reference, &color, &ids), WHIT_OK);
     assert_true(last == 1.0);
@@ -47,8 +47,6 @@ TEST(draws_pictures_and_ray_trees)
     assert_int_equal(stats.rays_shadow, of_kind[WHIT_RAY_SHADOW]);
     assert_int_equal(stats.rays_reflected, of_kind[WHIT_RAY_REFLECTED]);
     assert_int_equal(stats.rays_refracted, of_kind[WHIT_RAY_REFRACTED]);
-    whit_image_destroy(color);
-    whit_image_destroy(ids);
     whit_reference_destroy(reference);
     scene_close();
 }
@@ -66,16 +64,14 @@ TEST(any_number_of_samples_is_their_mean)
     scene_open(WHIT_SCENES_DIR "/cube.json");
     double sums[WIDTH * HEIGHT * 4] = {0};
     for (uint32_t count = 1; count <= COUNT; ++count) {
-        whit_image *one = draw_samples(count - 1, 1);
-        whit_image *all = draw_samples(0, count);
+        own_whit_image *one = draw_samples(count - 1, 1);
+        own_whit_image *all = draw_samples(0, count);
         for (int i = 0; i < WIDTH * HEIGHT * 4; ++i) {
             sums[i] += (double)whit_image_floats(one)[i];
             double mean = sums[i] / count, drawn = (double)whit_image_floats(all)[i];
             if (fabs(drawn - mean) > 1e-6 * fabs(mean))
                 fail_msg("%u samples, float %d: %.9g is not %.9g", count, i, drawn, mean);
         }
-        whit_image_destroy(one);
-        whit_image_destroy(all);
     }
     scene_close();
 }

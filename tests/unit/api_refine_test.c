@@ -327,7 +327,7 @@ static bool judge_scene(const char *path, const char *name)
     bool good = true;
     for (uint32_t samples = SAMPLES_FIRST; samples <= SAMPLES_LAST; samples *= 2) {
         whit_refine_info info = refine_to(&o, samples);
-        whit_image *picture = picture_of(&o), *estimate = NULL;
+        own_whit_image *picture = picture_of(&o), *estimate = NULL;
         assert_int_equal(whit_refine_error_image(o.refine, &estimate), WHIT_OK);
         struct judged judged = judge(whit_image_floats(estimate), whit_image_floats(picture),
                                      whit_image_floats(truth), pixels);
@@ -335,8 +335,6 @@ static bool judge_scene(const char *path, const char *name)
                       judged.pixels, judged.covered, judged.median, info.error, judged.rmse,
                       is_good(&judged) ? "" : "short");
         good &= is_good(&judged);
-        whit_image_destroy(picture);
-        whit_image_destroy(estimate);
     }
     whit_image_destroy(truth);
     end(&o);

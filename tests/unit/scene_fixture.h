@@ -59,6 +59,14 @@ static inline whit_renderer *renderer_of(const whit_renderer_params *params)
     return renderer;
 }
 
+static inline void drop_image(whit_image **at)
+{
+    whit_image_destroy(*at);
+}
+
+/* Freed at the end of its block: own_whit_image *image = image_of(...); */
+#define own_whit_image __attribute__((cleanup(drop_image))) whit_image
+
 static inline whit_image *image_of(whit_renderer *renderer, whit_aov aov)
 {
     whit_image *image = NULL;

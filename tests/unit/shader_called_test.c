@@ -68,19 +68,17 @@ TEST(what_is_not_asked_for_is_not_compiled)
         uint64_t compiled, forced;
         uint32_t kernels, more;
         whit_shader *shader = load(cases[i].content);
-        whit_image *usual = draw(shader, 0, &compiled, &kernels);
+        own_whit_image *usual = draw(shader, 0, &compiled, &kernels);
         if ((compiled & lights) != (cases[i].lights ? lights : 0) ||
             (compiled & shadows) != (cases[i].shadows ? shadows : 0) || kernels != cases[i].kernels)
             fail_msg("lights %d, shadows %d, %u kernels: %s", (compiled & lights) != 0,
                      (compiled & shadows) != 0, kernels, cases[i].content);
         if (cases_turn(i, 3)) {
-            whit_image *whole = draw(shader, all, &forced, &more);
+            own_whit_image *whole = draw(shader, all, &forced, &more);
             assert_int_equal(forced & all, all);
             assert_memory_equal(whit_image_floats(usual), whit_image_floats(whole),
                                 PIXELS * 4 * sizeof(float));
-            whit_image_destroy(whole);
         }
-        whit_image_destroy(usual);
         whit_shader_destroy(shader);
     }
 }
@@ -112,7 +110,7 @@ static void is_as(whit_renderer *renderer, const whit_renderer_params *params,
     whit_renderer *other = renderer_of(&usual);
     assert_int_equal(whit_renderer_render(other), WHIT_OK);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    whit_image *a = image_of(renderer, WHIT_AOV_COLOR), *b = image_of(other, WHIT_AOV_COLOR);
+    own_whit_image *a = image_of(renderer, WHIT_AOV_COLOR), *b = image_of(other, WHIT_AOV_COLOR);
     assert_memory_equal(whit_image_floats(a), whit_image_floats(b),
                         (size_t)params->width * params->height * 4 * sizeof(float));
     whit_renderer_get_stats(renderer, &stats);
@@ -121,8 +119,6 @@ static void is_as(whit_renderer *renderer, const whit_renderer_params *params,
     /* A kernel in two parts has more instructions, for the second beginning and end. */
     assert_int_equal(stats.kernel_instructions == stats_usual.kernel_instructions,
                      !params->few_pixels);
-    whit_image_destroy(a);
-    whit_image_destroy(b);
     whit_renderer_destroy(other);
 }
 
@@ -169,7 +165,7 @@ TEST(misses_know_their_ray)
     whit_shader *shader =
         load("vec3 miss(vec3 dir)\n{\n    return vec3(bounces(), ray_distance() > "
              "1e30, length(dir));\n}\n");
-    whit_image *image = draw(shader, 0, &compiled, &kernels);
+    own_whit_image *image = draw(shader, 0, &compiled, &kernels);
     const float *color = whit_image_floats(image);
     for (uint32_t i = 0; i < PIXELS; ++i, color += 4) {
         bool straight = color[0] == 0.0f && color[1] == 1.0f;
@@ -178,7 +174,6 @@ TEST(misses_know_their_ray)
     }
     if (seen < PIXELS / 8 || mirrored < PIXELS / 50)
         fail_msg("%u pixels see the sky, %u in a mirror", seen, mirrored);
-    whit_image_destroy(image);
     whit_shader_destroy(shader);
 }
 
@@ -424,7 +419,7 @@ static uint64_t traced_by_functions(const char *content, whit_numerics numerics,
     params.numerics = numerics;
     whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    whit_image *ids = image_of(renderer, WHIT_AOV_IDS);
+    own_whit_image *ids = image_of(renderer, WHIT_AOV_IDS);
     whit_renderer_get_stats(renderer, &stats);
     *hits = 0;
     for (uint32_t i = 0; i < ODD_WIDTH * ODD_HEIGHT; ++i)
@@ -432,7 +427,6 @@ static uint64_t traced_by_functions(const char *content, whit_numerics numerics,
     assert_int_equal(stats.rays_primary, ODD_WIDTH * ODD_HEIGHT);
     assert_int_equal(whit_stats_rays(&stats),
                      stats.rays_primary + stats.rays_shadow + stats.rays_by_functions);
-    whit_image_destroy(ids);
     whit_renderer_destroy(renderer);
     whit_shader_destroy(shader);
     return stats.rays_by_functions;

@@ -57,15 +57,13 @@ static whit_result draw(const char *part, const whit_shader *shader, whit_numeri
     whit_result result = whit_renderer_create(device, accel, &params, &renderer);
     if (result == WHIT_OK)
         result = whit_renderer_render(renderer);
-    whit_image *color = NULL, *ids = NULL;
+    own_whit_image *color = NULL, *ids = NULL;
     if (result == WHIT_OK && out) {
         color = image_of(renderer, WHIT_AOV_COLOR);
         ids = image_of(renderer, WHIT_AOV_IDS);
         memcpy(out->color, whit_image_floats(color), sizeof out->color);
         memcpy(out->ids, whit_image_words(ids), sizeof out->ids);
     }
-    whit_image_destroy(color);
-    whit_image_destroy(ids);
     whit_renderer_destroy(renderer);
     scene_close();
     return result;

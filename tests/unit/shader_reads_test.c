@@ -101,19 +101,17 @@ static void check(const char *content, const char *removed, const char *read)
     if (hooks_load(content, &shader) != WHIT_OK)
         fail_msg("%s", messages.last_error);
     whit_renderer_params params = params_of(shader, removed);
-    whit_image *usual = draw(&params, &compiled);
+    own_whit_image *usual = draw(&params, &compiled);
     compiled &= called;
     if (compiled != expected)
         fail_msg("%#llx is compiled, %#llx was expected: %s", (unsigned long long)compiled,
                  (unsigned long long)expected, content);
     params.effects_added = called & ~compiled;
-    whit_image *other = draw(&params, &whole);
+    own_whit_image *other = draw(&params, &whole);
     assert_int_equal(whole & called, called);
     if (memcmp(whit_image_floats(usual), whit_image_floats(other),
                WIDTH * HEIGHT * 4 * sizeof(float)) != 0)
         fail_msg("another picture: %s", content);
-    whit_image_destroy(other);
-    whit_image_destroy(usual);
     whit_shader_destroy(shader);
 }
 
@@ -167,13 +165,11 @@ TEST(the_kernel_of_functions_has_what_they_read)
         assert_true(instructions_of(&params) > instructions);
         if (cases_turn(i, 4)) {
             params.all_effects = false;
-            whit_image *usual = draw(&params, &compiled);
+            own_whit_image *usual = draw(&params, &compiled);
             params.all_effects = true;
-            whit_image *whole = draw(&params, &compiled);
+            own_whit_image *whole = draw(&params, &compiled);
             assert_memory_equal(whit_image_floats(usual), whit_image_floats(whole),
                                 WIDTH * HEIGHT * 4 * sizeof(float));
-            whit_image_destroy(whole);
-            whit_image_destroy(usual);
         }
         whit_shader_destroy(shader);
     }
