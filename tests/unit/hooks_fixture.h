@@ -21,6 +21,15 @@ static inline int hooks_end(void **state)
     return 0;
 }
 
+static inline void drop_shader(whit_shader **at)
+{
+    whit_shader_destroy(*at);
+}
+
+/* Freed at the end of its block; a renderer with these functions is declared after them, or freed
+   before. */
+#define own_whit_shader __attribute__((cleanup(drop_shader))) whit_shader
+
 /* Loads functions from a temporary file with this text. */
 static inline whit_result hooks_load(const char *text, whit_shader **shader)
 {

@@ -270,7 +270,7 @@ TEST(values_are_of_the_surface_as_it_is_changed)
     static const float expected[AOVS - 1][4] = {{0.125f, 2.0f, 3.0f, 0.75f},
                                                 {0.25f, 0.5f, 0.0f, 0.0f}};
     whit_renderer_params params = usual(1);
-    whit_shader *changing;
+    own_whit_shader *changing = NULL;
     uint32_t hits = 0, wrong = 0, turned = 0;
     assert_int_equal(hooks_load(changes, &changing), WHIT_OK);
     params.shader = changing;
@@ -288,7 +288,6 @@ TEST(values_are_of_the_surface_as_it_is_changed)
     assert_true(hits > PIXELS / 4 && turned > PIXELS / 8);
     assert_int_equal(wrong, 0);
     drop(&drawn);
-    whit_shader_destroy(changing);
 }
 
 static double render_ms(const whit_renderer *renderer)

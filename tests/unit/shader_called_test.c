@@ -67,7 +67,7 @@ TEST(what_is_not_asked_for_is_not_compiled)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         uint64_t compiled, forced;
         uint32_t kernels, more;
-        whit_shader *shader = load(cases[i].content);
+        own_whit_shader *shader = load(cases[i].content);
         own_whit_image *usual = draw(shader, 0, &compiled, &kernels);
         if ((compiled & lights) != (cases[i].lights ? lights : 0) ||
             (compiled & shadows) != (cases[i].shadows ? shadows : 0) || kernels != cases[i].kernels)
@@ -79,7 +79,6 @@ TEST(what_is_not_asked_for_is_not_compiled)
             assert_memory_equal(whit_image_floats(usual), whit_image_floats(whole),
                                 PIXELS * 4 * sizeof(float));
         }
-        whit_shader_destroy(shader);
     }
 }
 
@@ -126,10 +125,10 @@ static void is_as(whit_renderer *renderer, const whit_renderer_params *params,
    with more hits than there are rows. */
 TEST(a_kernel_in_parts_draws_the_same)
 {
-    whit_shader *first = load(TOLD "    return sum;\n}\n");
-    whit_shader *second = load(TOLD "    return sum * 0.5;\n}\n");
-    whit_shader *flat = load("vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ng + "
-                             "visible(s, s.ns, 2.0); }\n");
+    own_whit_shader *first = load(TOLD "    return sum;\n}\n");
+    own_whit_shader *second = load(TOLD "    return sum * 0.5;\n}\n");
+    own_whit_shader *flat = load("vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ng + "
+                                 "visible(s, s.ns, 2.0); }\n");
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, first);
     params.step = no_step;
     params.keep_unread = params.few_pixels = true;
@@ -152,9 +151,6 @@ TEST(a_kernel_in_parts_draws_the_same)
     assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
     is_as(renderer, &params, flat);
     whit_renderer_destroy(renderer);
-    whit_shader_destroy(first);
-    whit_shader_destroy(second);
-    whit_shader_destroy(flat);
 }
 
 /* miss() is called in a kernel of its own, for camera rays and for reflected rays. */
@@ -162,7 +158,7 @@ TEST(misses_know_their_ray)
 {
     uint64_t compiled;
     uint32_t kernels, seen = 0, mirrored = 0;
-    whit_shader *shader =
+    own_whit_shader *shader =
         load("vec3 miss(vec3 dir)\n{\n    return vec3(bounces(), ray_distance() > "
              "1e30, length(dir));\n}\n");
     own_whit_image *image = draw(shader, 0, &compiled, &kernels);
@@ -174,7 +170,6 @@ TEST(misses_know_their_ray)
     }
     if (seen < PIXELS / 8 || mirrored < PIXELS / 50)
         fail_msg("%u pixels see the sky, %u in a mirror", seen, mirrored);
-    whit_shader_destroy(shader);
 }
 
 /* Another version of a shader has the same properties that buffers and kernels depend on. */
@@ -192,18 +187,16 @@ TEST(another_version_has_the_same_values_and_asks_for_the_same)
         {AOV("one") AOV("two") SHADE "s.ns; }\n", false},
         {SHADE "s.ns; }\n", false},
     };
-    whit_shader *shader = load(AOV("one") SHADE "s.ns; }\n");
+    own_whit_shader *shader = load(AOV("one") SHADE "s.ns; }\n");
     whit_renderer_params params = whit_renderer_defaults();
     params.shader = shader;
     whit_renderer *renderer = renderer_of(&params);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        whit_shader *other = load(cases[i].content);
+        own_whit_shader *other = load(cases[i].content);
         if (whit_renderer_takes_shader(renderer, other) != cases[i].taken)
             fail_msg("%s", cases[i].content);
-        whit_shader_destroy(other);
     }
     whit_renderer_destroy(renderer);
-    whit_shader_destroy(shader);
 }
 
 static void count_call(void *user, double done)
@@ -397,7 +390,7 @@ TEST_BY_TURNS(another_post_behind_a_cancelled_picture_needs_no_rays, 1, 2)
    shader asks for none. */
 TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
 {
-    whit_shader *shader = load("//@ expect rays.shadow == base\n" SHADE "s.ns; }\n");
+    own_whit_shader *shader = load("//@ expect rays.shadow == base\n" SHADE "s.ns; }\n");
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     bool held;
     whit_renderer *renderer = renderer_of(&params);
@@ -405,14 +398,13 @@ TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
     assert_int_equal(whit_renderer_check_expectations(renderer, &held), WHIT_OK);
     assert_false(held);
     whit_renderer_destroy(renderer);
-    whit_shader_destroy(shader);
 }
 
 /* The number of rays that functions traced for a picture; *hits: number of pixels with a hit. */
 static uint64_t traced_by_functions(const char *content, whit_numerics numerics, uint64_t *hits)
 {
     enum { ODD_WIDTH = 51, ODD_HEIGHT = 37 }; /* no multiples of a tile's sides */
-    whit_shader *shader = load(content);
+    own_whit_shader *shader = load(content);
     whit_renderer_params params = params_sized(ODD_WIDTH, ODD_HEIGHT, shader);
     whit_stats stats;
     params.depth = 0;
@@ -428,7 +420,6 @@ static uint64_t traced_by_functions(const char *content, whit_numerics numerics,
     assert_int_equal(whit_stats_rays(&stats),
                      stats.rays_primary + stats.rays_shadow + stats.rays_by_functions);
     whit_renderer_destroy(renderer);
-    whit_shader_destroy(shader);
     return stats.rays_by_functions;
 }
 

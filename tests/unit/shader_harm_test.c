@@ -32,10 +32,9 @@ static whit_result draw(const whit_shader *shader, const char *sliders, float *p
 
 static void draw_good(float *pixels)
 {
-    whit_shader *shader = NULL;
+    own_whit_shader *shader = NULL;
     assert_int_equal(whit_shader_load(compiler, in_folder("good.glsl"), false, &shader), WHIT_OK);
     assert_int_equal(draw(shader, NULL, pixels), WHIT_OK);
-    whit_shader_destroy(shader);
 }
 
 static int begin(void **state)
@@ -98,12 +97,11 @@ static void all_are_reported(void)
 /* Asserts that the folder's a.glsl is refused, at this place and for this reason. */
 static void refuse(const char *name, const char *place, const char *reason)
 {
-    whit_shader *shader = NULL;
+    own_whit_shader *shader = NULL;
     messages = (struct messages){0};
     double start_ms = clock_ms();
     whit_result result = whit_shader_load(compiler, in_folder("a.glsl"), false, &shader);
     count(name, start_ms, result == WHIT_ERROR_INPUT && !shader && is_told(place, reason));
-    whit_shader_destroy(shader);
 }
 
 static void refuse_repeated(const char *name, const char *before, const char *what, size_t times,

@@ -90,7 +90,7 @@ static void compare(const struct picture *shape, const struct picture *real)
 TEST(shape_is_seen_lit_mirrored_and_in_the_way_as_a_ball_is)
 {
     static struct picture shape, real;
-    whit_shader *shader;
+    own_whit_shader *shader = NULL;
     assert_int_equal(hooks_load(SHAPE_TEXT, &shader), WHIT_OK);
     static const whit_numerics levels[] = {WHIT_NUMERICS_WATERTIGHT, WHIT_NUMERICS_EXACT};
     for (size_t i = 0; i < sizeof levels / sizeof *levels; ++i) {
@@ -98,14 +98,13 @@ TEST(shape_is_seen_lit_mirrored_and_in_the_way_as_a_ball_is)
         assert_int_equal(draw(real_ball, NULL, levels[i], &real), WHIT_OK);
         compare(&shape, &real);
     }
-    whit_shader_destroy(shader);
 }
 
 /* In a probe the float mirror and exact arithmetic, which do not know the shape, agree that nothing
    is in front of it, and agree on all rays behind it. */
 TEST_BY_TURNS(probe_of_the_shape_differs_nowhere, 0, 2)
 {
-    whit_shader *shader;
+    own_whit_shader *shader = NULL;
     whit_probe_report *report;
     open_room("");
     assert_int_equal(hooks_load(SHAPE_TEXT, &shader), WHIT_OK);
@@ -116,7 +115,6 @@ TEST_BY_TURNS(probe_of_the_shape_differs_nowhere, 0, 2)
     assert_true(report->ray_count > 2 && report->differing == 0);
     whit_probe_report_destroy(report);
     whit_renderer_destroy(renderer);
-    whit_shader_destroy(shader);
     scene_close();
 }
 
@@ -144,7 +142,7 @@ TEST_BY_TURNS(functions_that_trace_meet_the_shape, 1, 2)
 
 TEST_BY_TURNS(material_that_nothing_wears_has_a_nearest_one, 0, 2)
 {
-    whit_shader *shader;
+    own_whit_shader *shader = NULL;
     assert_int_equal(hooks_load("//@ box -1 0 -1  1 1 1  0.01 gald\n"
                                 "bool intersect(vec3 origin, vec3 dir, float far, out float t, "
                                 "out vec3 normal)\n{ t = 0.0; normal = -dir; return false; }\n",
@@ -152,13 +150,12 @@ TEST_BY_TURNS(material_that_nothing_wears_has_a_nearest_one, 0, 2)
                      WHIT_OK);
     assert_int_equal(draw("", shader, WHIT_NUMERICS_WATERTIGHT, NULL), WHIT_OK);
     assert_non_null(strstr(messages.text, "wears a material `gald`; did you mean `gold`?"));
-    whit_shader_destroy(shader);
 }
 
 /* Asserts that drawing gives `wanted`, with `part` in the message. */
 static void expect_error(const char *content, whit_result wanted, const char *part)
 {
-    whit_shader *shader = NULL;
+    own_whit_shader *shader = NULL;
     messages = (struct messages){0};
     whit_result result = hooks_load(content, &shader);
     if (result == WHIT_OK)
@@ -166,7 +163,6 @@ static void expect_error(const char *content, whit_result wanted, const char *pa
     if (result != wanted || !strstr(messages.last_error, part))
         fail_msg("%d, `%s` in place of %d, `%s`", (int)result, messages.last_error, (int)wanted,
                  part);
-    whit_shader_destroy(shader);
 }
 
 TEST_BY_TURNS(answers_that_are_no_shape_s_are_told, 1, 2)

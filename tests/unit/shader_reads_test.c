@@ -97,7 +97,7 @@ static void check(const char *content, const char *removed, const char *read)
 {
     uint64_t called = called_by_scene() & effects(LOOKS), expected = effects(read) & called;
     uint64_t compiled, whole;
-    whit_shader *shader;
+    own_whit_shader *shader = NULL;
     if (hooks_load(content, &shader) != WHIT_OK)
         fail_msg("%s", messages.last_error);
     whit_renderer_params params = params_of(shader, removed);
@@ -112,7 +112,6 @@ static void check(const char *content, const char *removed, const char *read)
     if (memcmp(whit_image_floats(usual), whit_image_floats(other),
                WIDTH * HEIGHT * 4 * sizeof(float)) != 0)
         fail_msg("another picture: %s", content);
-    whit_shader_destroy(shader);
 }
 
 TEST(what_is_not_read_is_not_compiled)
@@ -155,7 +154,7 @@ TEST(the_kernel_of_functions_has_what_they_read)
     scene_open(WHIT_SCENES_DIR "/default.json");
     for (size_t i = 0; i < sizeof contents / sizeof *contents; ++i) {
         uint64_t compiled;
-        whit_shader *shader;
+        own_whit_shader *shader = NULL;
         assert_int_equal(hooks_load(contents[i], &shader), WHIT_OK);
         whit_renderer_params params = params_of(shader, "");
         uint32_t instructions = instructions_of(&params);
@@ -171,7 +170,6 @@ TEST(the_kernel_of_functions_has_what_they_read)
             assert_memory_equal(whit_image_floats(usual), whit_image_floats(whole),
                                 WIDTH * HEIGHT * 4 * sizeof(float));
         }
-        whit_shader_destroy(shader);
     }
     scene_close();
 }
@@ -179,7 +177,7 @@ TEST(the_kernel_of_functions_has_what_they_read)
 /* A renderer with keep_unread takes a version that reads more; another one must be made anew. */
 TEST(another_version_may_read_more)
 {
-    whit_shader *flat, *smooth;
+    own_whit_shader *flat = NULL, *smooth = NULL;
     scene_open(WHIT_SCENES_DIR SHAPES);
     assert_int_equal(hooks_load(SHADE "s.ng; }\n", &flat), WHIT_OK);
     assert_int_equal(hooks_load(SHADE "s.ns; }\n", &smooth), WHIT_OK);
@@ -191,8 +189,6 @@ TEST(another_version_may_read_more)
         assert_true(whit_renderer_takes_shader(renderer, flat));
         whit_renderer_destroy(renderer);
     }
-    whit_shader_destroy(smooth);
-    whit_shader_destroy(flat);
     scene_close();
 }
 
