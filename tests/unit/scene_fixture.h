@@ -52,6 +52,15 @@ static inline whit_renderer_params params_sized(uint32_t width, uint32_t height,
     return params;
 }
 
+static inline void drop_renderer(whit_renderer **at)
+{
+    whit_renderer_destroy(*at);
+}
+
+/* Freed at the end of its block, where its scene must still be open:
+   own_whit_renderer *renderer = renderer_of(...); */
+#define own_whit_renderer __attribute__((cleanup(drop_renderer))) whit_renderer
+
 static inline whit_renderer *renderer_of(const whit_renderer_params *params)
 {
     whit_renderer *renderer = NULL;

@@ -48,7 +48,7 @@ struct drawn {
 static struct drawn draw(const whit_renderer_params *params)
 {
     struct drawn drawn = {0};
-    whit_renderer *renderer = renderer_of(params);
+    own_whit_renderer *renderer = renderer_of(params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     drawn.color = image_of(renderer, WHIT_AOV_COLOR);
     drawn.ids = image_of(renderer, WHIT_AOV_IDS);
@@ -61,7 +61,6 @@ static struct drawn draw(const whit_renderer_params *params)
                                          (whit_aov)(WHIT_AOV_SHADER + (params->shader ? AOVS : 0)),
                                          &none),
                      WHIT_ERROR_USAGE);
-    whit_renderer_destroy(renderer);
     return drawn;
 }
 

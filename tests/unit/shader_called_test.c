@@ -106,7 +106,7 @@ static void is_as(whit_renderer *renderer, const whit_renderer_params *params,
     whit_stats stats, stats_usual;
     usual.few_pixels = false;
     usual.shader = shader;
-    whit_renderer *other = renderer_of(&usual);
+    own_whit_renderer *other = renderer_of(&usual);
     assert_int_equal(whit_renderer_render(other), WHIT_OK);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     own_whit_image *a = image_of(renderer, WHIT_AOV_COLOR), *b = image_of(other, WHIT_AOV_COLOR);
@@ -118,7 +118,6 @@ static void is_as(whit_renderer *renderer, const whit_renderer_params *params,
     /* A kernel in two parts has more instructions, for the second beginning and end. */
     assert_int_equal(stats.kernel_instructions == stats_usual.kernel_instructions,
                      !params->few_pixels);
-    whit_renderer_destroy(other);
 }
 
 /* A kernel in one part and one in two parts draw the same, also after other versions, and in tiles
@@ -133,7 +132,7 @@ TEST(a_kernel_in_parts_draws_the_same)
     params.step = no_step;
     params.keep_unread = params.few_pixels = true;
     params.tile_size = 256;
-    whit_renderer *renderer = renderer_of(&params);
+    own_whit_renderer *renderer = renderer_of(&params);
     is_as(renderer, &params, first);
     params.shader = second;
     assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
@@ -150,7 +149,6 @@ TEST(a_kernel_in_parts_draws_the_same)
     params.shader = flat;
     assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
     is_as(renderer, &params, flat);
-    whit_renderer_destroy(renderer);
 }
 
 /* miss() is called in a kernel of its own, for camera rays and for reflected rays. */
@@ -190,13 +188,12 @@ TEST(another_version_has_the_same_values_and_asks_for_the_same)
     own_whit_shader *shader = load(AOV("one") SHADE "s.ns; }\n");
     whit_renderer_params params = whit_renderer_defaults();
     params.shader = shader;
-    whit_renderer *renderer = renderer_of(&params);
+    own_whit_renderer *renderer = renderer_of(&params);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         own_whit_shader *other = load(cases[i].content);
         if (whit_renderer_takes_shader(renderer, other) != cases[i].taken)
             fail_msg("%s", cases[i].content);
     }
-    whit_renderer_destroy(renderer);
 }
 
 static void count_call(void *user, double done)
@@ -351,7 +348,7 @@ static bool traces_behind_cancelled(uint32_t samples, whit_shader *const shaders
     params.progress = count_until_stop;
     params.progress_user = &stops;
     params.cancel = &stopping.stop;
-    whit_renderer *renderer = renderer_of(&params);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     params.reuse_rays = false;
     assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
@@ -362,9 +359,7 @@ static bool traces_behind_cancelled(uint32_t samples, whit_shader *const shaders
     params.reuse_rays = true;
     params.shader = shaders[1];
     assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
-    bool traces = draw_in_place(renderer, &stopping.calls, out);
-    whit_renderer_destroy(renderer);
-    return traces;
+    return draw_in_place(renderer, &stopping.calls, out);
 }
 
 /* A cancelled picture of one sample has overwritten pixels with the same values, so that the kept
@@ -393,11 +388,10 @@ TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
     own_whit_shader *shader = load("//@ expect rays.shadow == base\n" SHADE "s.ns; }\n");
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     bool held;
-    whit_renderer *renderer = renderer_of(&params);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     assert_int_equal(whit_renderer_check_expectations(renderer, &held), WHIT_OK);
     assert_false(held);
-    whit_renderer_destroy(renderer);
 }
 
 /* The number of rays that functions traced for a picture; *hits: number of pixels with a hit. */
@@ -409,7 +403,7 @@ static uint64_t traced_by_functions(const char *content, whit_numerics numerics,
     whit_stats stats;
     params.depth = 0;
     params.numerics = numerics;
-    whit_renderer *renderer = renderer_of(&params);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     own_whit_image *ids = image_of(renderer, WHIT_AOV_IDS);
     whit_renderer_get_stats(renderer, &stats);
@@ -419,7 +413,6 @@ static uint64_t traced_by_functions(const char *content, whit_numerics numerics,
     assert_int_equal(stats.rays_primary, ODD_WIDTH * ODD_HEIGHT);
     assert_int_equal(whit_stats_rays(&stats),
                      stats.rays_primary + stats.rays_shadow + stats.rays_by_functions);
-    whit_renderer_destroy(renderer);
     return stats.rays_by_functions;
 }
 

@@ -89,7 +89,7 @@ static uint32_t count_of(const whit_probe_report *report, whit_probe_end end_a,
 
 TEST(values_are_those_of_the_first_sample_in_the_order_of_rays)
 {
-    whit_renderer *renderer = make(shader, 4);
+    own_whit_renderer *renderer = make(shader, 4);
     whit_probe_report *report;
     assert_int_equal(whit_probe(renderer, X, Y, 0, &report), WHIT_OK);
     uint32_t met = count_of(report, WHIT_PROBE_OPAQUE, WHIT_PROBE_DIVIDED);
@@ -118,12 +118,11 @@ TEST(values_are_those_of_the_first_sample_in_the_order_of_rays)
         assert_true(i == 0 || value->ray > bounces->values[i - 1].ray);
     }
     whit_probe_report_destroy(report);
-    whit_renderer_destroy(renderer);
 }
 
 TEST(rays_that_are_dropped_have_no_values)
 {
-    whit_renderer *renderer = make(shader, 1);
+    own_whit_renderer *renderer = make(shader, 1);
     whit_probe_report *all, *some;
     assert_int_equal(whit_probe(renderer, X, Y, 0, &all), WHIT_OK);
     assert_int_equal(whit_probe(renderer, X, Y, 2, &some), WHIT_OK);
@@ -133,12 +132,11 @@ TEST(rays_that_are_dropped_have_no_values)
     assert_int_equal(some->calls[8].value_count, 1);
     whit_probe_report_destroy(all);
     whit_probe_report_destroy(some);
-    whit_renderer_destroy(renderer);
 }
 
 TEST(a_pixel_tells_of_itself_and_twice_the_same)
 {
-    whit_renderer *renderer = make(shader, 1);
+    own_whit_renderer *renderer = make(shader, 1);
     whit_probe_report *first, *second;
     assert_int_equal(whit_probe(renderer, X, Y, 0, &first), WHIT_OK);
     assert_int_equal(whit_probe(renderer, FLOOR_X, FLOOR_Y, 0, &second), WHIT_OK);
@@ -152,7 +150,6 @@ TEST(a_pixel_tells_of_itself_and_twice_the_same)
     }
     whit_probe_report_destroy(first);
     whit_probe_report_destroy(second);
-    whit_renderer_destroy(renderer);
 }
 
 static void assert_calls(whit_renderer *renderer, uint32_t count)
@@ -167,7 +164,7 @@ static void assert_calls(whit_renderer *renderer, uint32_t count)
 
 TEST(another_view_and_another_version_are_followed)
 {
-    whit_renderer *renderer = make(plain, 1);
+    own_whit_renderer *renderer = make(plain, 1);
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     assert_calls(renderer, 0);
     assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
@@ -179,7 +176,6 @@ TEST(another_view_and_another_version_are_followed)
     params.shader = plain;
     assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
     assert_calls(renderer, 0);
-    whit_renderer_destroy(renderer);
 }
 
 TEST(a_picture_has_nothing_of_it)

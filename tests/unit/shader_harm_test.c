@@ -16,7 +16,7 @@ static double slowest_ms;
 static whit_result draw(const whit_shader *shader, const char *sliders, float *pixels)
 {
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
-    whit_renderer *renderer = NULL;
+    own_whit_renderer *renderer = NULL;
     own_whit_image *color = NULL;
     params.sliders = sliders;
     whit_result result = whit_renderer_create(device, accel, &params, &renderer);
@@ -26,7 +26,6 @@ static whit_result draw(const whit_shader *shader, const char *sliders, float *p
         result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &color);
     if (result == WHIT_OK)
         memcpy(pixels, whit_image_floats(color), sizeof good_pixels);
-    whit_renderer_destroy(renderer);
     return result;
 }
 

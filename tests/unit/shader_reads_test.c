@@ -18,12 +18,10 @@ static uint64_t effects(const char *names)
 
 static whit_image *draw(const whit_renderer_params *params, uint64_t *compiled)
 {
-    whit_renderer *renderer = renderer_of(params);
+    own_whit_renderer *renderer = renderer_of(params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    whit_image *color = image_of(renderer, WHIT_AOV_COLOR);
     *compiled = effects_compiled(renderer);
-    whit_renderer_destroy(renderer);
-    return color;
+    return image_of(renderer, WHIT_AOV_COLOR);
 }
 
 static whit_renderer_params params_of(const whit_shader *shader, const char *removed)
@@ -184,10 +182,9 @@ TEST(another_version_may_read_more)
     for (int keeps_all = 0; keeps_all < 2; ++keeps_all) {
         whit_renderer_params params = params_of(flat, RAYS);
         params.keep_unread = keeps_all;
-        whit_renderer *renderer = renderer_of(&params);
+        own_whit_renderer *renderer = renderer_of(&params);
         assert_int_equal(whit_renderer_takes_shader(renderer, smooth), keeps_all);
         assert_true(whit_renderer_takes_shader(renderer, flat));
-        whit_renderer_destroy(renderer);
     }
     scene_close();
 }
