@@ -172,7 +172,7 @@ static inline uint32_t points_inside(quad points[POINTS][3], const float lo[3], 
    has a triangle twice. */
 static inline bool is_covered(const struct soup *soup, const struct bvh *bvh)
 {
-    uint32_t *seen = calloc(soup->count + 1, sizeof *seen);
+    own_memory uint32_t *seen = calloc(soup->count + 1, sizeof *seen);
     bool covered = seen != NULL;
     for (uint32_t i = 0; i < bvh->node_count && covered; ++i) {
         const struct gpu_bvh_node *node = &bvh->nodes[i];
@@ -187,7 +187,6 @@ static inline bool is_covered(const struct soup *soup, const struct bvh *bvh)
     }
     for (uint32_t i = 0; i < soup->count && covered; ++i)
         covered = seen[i] == POINTS_ALL;
-    free(seen);
     return covered;
 }
 

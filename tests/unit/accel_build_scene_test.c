@@ -303,7 +303,7 @@ TEST(moved_instances_are_hit_alike_whatever_the_tree)
     for (size_t w = 0; w < WAYS; ++w)
         all[w] = accel_of(fresh.scene, ways[w]);
     size_t mesh_nodes = all[0]->node_count - all[0]->instance_node_capacity;
-    struct gpu_bvh_node *kept = malloc(mesh_nodes * sizeof *kept);
+    own_memory struct gpu_bvh_node *kept = malloc(mesh_nodes * sizeof *kept);
     assert_non_null(kept);
     memcpy(kept, all[2]->nodes + all[2]->instance_node_capacity, mesh_nodes * sizeof *kept);
     uint32_t met = 0;
@@ -321,7 +321,6 @@ TEST(moved_instances_are_hit_alike_whatever_the_tree)
     assert_true(met > 160 * 1000 / 10);
     assert_memory_equal(kept, all[2]->nodes + all[2]->instance_node_capacity,
                         mesh_nodes * sizeof *kept);
-    free(kept);
     for (size_t w = 0; w < WAYS; ++w)
         accel_destroy(all[w]);
 }

@@ -40,7 +40,7 @@ static int compare_leaves(const void *a, const void *b)
 
 static void check_tree(const struct accel *accel, uint32_t root, uint32_t root8, uint32_t depth8)
 {
-    struct leaves *two = calloc(1, sizeof *two), *eight = calloc(1, sizeof *eight);
+    own_memory struct leaves *two = calloc(1, sizeof *two), *eight = calloc(1, sizeof *eight);
     assert_true(two && eight);
     collect(accel->nodes, root, 2, 1, two);
     collect(accel->bvh8.nodes, root8, 8, 1, eight);
@@ -51,8 +51,6 @@ static void check_tree(const struct accel *accel, uint32_t root, uint32_t root8,
     assert_true(eight->depth <= depth8 && (two->count <= 8 || eight->depth < two->depth));
     print_message("  %u leaves, depth %u of two, %u of eight\n", two->count, two->depth,
                   eight->depth);
-    free(two);
-    free(eight);
 }
 
 TEST(leaves_are_those_of_two)

@@ -216,7 +216,7 @@ TEST(instances_in_one_place_are_all_entered)
     const char *many = getenv("WHIT_TEST_INSTANCES");
     const uint32_t count = many ? (uint32_t)atoi(many) : 10000;
     assert_true(count >= 10000);
-    struct affine *matrices = malloc(count * sizeof *matrices);
+    own_memory struct affine *matrices = malloc(count * sizeof *matrices);
     assert_non_null(matrices);
     for (uint32_t i = 0; i < count; ++i)
         matrices[i] = affine_identity();
@@ -228,5 +228,4 @@ TEST(instances_in_one_place_are_all_entered)
     const uint32_t rays = count > 100000 ? 6 : 21;
     assert_all_are_entered(accel, count, NUMERICS_WATERTIGHT, rays);
     assert_all_are_entered(accel, count, NUMERICS_EXACT, rays);
-    free(matrices);
 }

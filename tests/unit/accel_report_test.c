@@ -79,7 +79,7 @@ static void mark(const struct accel *accel, uint32_t node, uint8_t *inside)
 static double brute_overlap(const struct accel *accel, const struct scene_mesh *mesh)
 {
     const struct accel_mesh *m = &accel->meshes[0];
-    uint8_t *inside = malloc(mesh->triangle_count);
+    own_memory uint8_t *inside = malloc(mesh->triangle_count);
     double sum = 0.0;
     assert_non_null(inside);
     for (uint32_t i = 0; i < m->node_count; ++i) {
@@ -101,7 +101,6 @@ static double brute_overlap(const struct accel *accel, const struct scene_mesh *
                                                            &mesh->positions[3 * corner[2]], &box);
         }
     }
-    free(inside);
     return sum;
 }
 

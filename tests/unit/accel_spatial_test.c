@@ -140,8 +140,8 @@ TEST(whole_triangles_stay_whole)
 {
     random_state = 7;
     own_soup soup = soup_rooms(1500);
-    uint8_t *whole = calloc(soup.count, 1);
-    uint32_t *times = calloc(soup.count, sizeof *times);
+    own_memory uint8_t *whole = calloc(soup.count, 1);
+    own_memory uint32_t *times = calloc(soup.count, sizeof *times);
     assert_true(whole && times);
     soup.triangles.whole = whole;
     for (int round = 0; round < 3; ++round) {
@@ -157,8 +157,6 @@ TEST(whole_triangles_stay_whole)
         assert_int_equal(bvh.clipped, round < 2);
         assert_true(is_covered(&soup, &bvh));
     }
-    free(whole);
-    free(times);
 }
 
 /* ---- Hits ---- */

@@ -35,12 +35,11 @@ static void put(const char *path, const char *text)
 
 static void assert_content(const char *path, const char *text)
 {
-    uint8_t *data;
+    own_memory uint8_t *data = NULL;
     size_t size_bytes;
     assert_int_equal(file_read(NULL, NULL, path, 0, &data, &size_bytes), WHIT_OK);
     assert_int_equal(size_bytes, strlen(text));
     assert_string_equal((char *)data, text);
-    free(data);
 }
 
 TEST_IN(commit_replaces_at_once, folder_begin, folder_end)

@@ -84,7 +84,7 @@ static void keep(const char *name, int seed)
 /* Whether the file is kept; what is read must be what was written. */
 static bool is_kept(const char *name, int seed)
 {
-    uint8_t *data = NULL;
+    own_memory uint8_t *data = NULL;
     size_t bytes = 0;
     bool found = store_read(&silent, name, &data, &bytes);
     assert_true(found == (data != NULL));
@@ -94,7 +94,6 @@ static bool is_kept(const char *name, int seed)
             assert_int_equal(data[i], (uint8_t)(seed + i));
         assert_int_equal(data[BYTES], 0);
     }
-    free(data);
     return found;
 }
 
@@ -130,11 +129,10 @@ TEST_IN(what_is_kept_is_read, begin, folder_end)
     assert_int_equal(stat(path_of("a"), &info), 0);
     assert_int_equal(info.st_mode & 0777, 0600);
     store_write(&silent, "empty", "", 0);
-    uint8_t *data;
+    own_memory uint8_t *data = NULL;
     size_t bytes;
     assert_true(store_read(&silent, "empty", &data, &bytes));
     assert_int_equal(bytes, 0);
-    free(data);
 }
 
 /* Damage: any byte flipped, any length, payload of zeros, another version, another file's

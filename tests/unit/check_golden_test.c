@@ -92,9 +92,8 @@ TEST(order_and_repetition_mean_nothing)
     char copy[sizeof shuffled];
     memcpy(copy, shuffled, sizeof shuffled);
     assert_true(golden_read_text(&golden, "x.golden", copy, GOLDEN_OF_DEVICE));
-    char *written = golden_text(&golden);
+    own_memory char *written = golden_text(&golden);
     assert_string_equal(written, text);
-    free(written);
     golden_finish(&golden);
 }
 
@@ -125,9 +124,8 @@ TEST(paths_are_beside_the_suite)
     assert_string_equal(other, "a/whit.reference.golden");
     free(other);
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i) {
-        char *path = golden_path(pairs[i][0], GOLDEN_OF_DEVICE);
+        own_memory char *path = golden_path(pairs[i][0], GOLDEN_OF_DEVICE);
         assert_string_equal(path, pairs[i][1]);
-        free(path);
     }
 }
 

@@ -71,7 +71,7 @@ static uint32_t count_of(const char *text, const char *word)
 
 TEST_IN(what_has_no_room_is_left_out, folder_begin, folder_end)
 {
-    char *page = make_page(CASES, PICTURE_BYTES_MAX);
+    own_memory char *page = make_page(CASES, PICTURE_BYTES_MAX);
     size_t bytes = strlen(page);
     uint32_t before = count_of(page, PICTURE("before")), after = count_of(page, PICTURE("after"));
     print_message("%zu bytes, %u pictures of what was, %u of what is\n", bytes, before, after);
@@ -80,16 +80,14 @@ TEST_IN(what_has_no_room_is_left_out, folder_begin, folder_end)
     assert_true(before > 0 && before < CASES);
     assert_int_equal(count_of(page, "\"cause\":\"cause: mesh"), CASES);
     assert_int_equal(count_of(page, "\"command\":\"whit render "), CASES);
-    free(page);
 }
 
 TEST_IN(what_has_room_is_there, folder_begin, folder_end)
 {
     static const char *const keys[] = {PICTURE("before"), PICTURE("difference"), PICTURE("flip"),
                                        PICTURE("after")};
-    char *page = make_page(CASES, 1500);
+    own_memory char *page = make_page(CASES, 1500);
     for (size_t i = 0; i < sizeof keys / sizeof *keys; ++i)
         assert_int_equal(count_of(page, keys[i]), CASES);
     assert_true(strlen(page) <= PAGE_BYTES_MAX);
-    free(page);
 }

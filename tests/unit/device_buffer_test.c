@@ -86,7 +86,7 @@ TEST(others_are_poisoned_in_tests)
 TEST(keeps_what_is_written_where)
 {
     const uint32_t uses[] = {BUFFER_STORAGE, BUFFER_STORAGE | BUFFER_HOST};
-    uint8_t *bytes = malloc(LARGE_BYTES), *back = malloc(LARGE_BYTES);
+    own_memory uint8_t *bytes = malloc(LARGE_BYTES), *back = malloc(LARGE_BYTES);
     assert_true(bytes && back);
     for (size_t i = 0; i < LARGE_BYTES; ++i)
         bytes[i] = (uint8_t)(i * 2654435761u >> 13);
@@ -104,8 +104,6 @@ TEST(keeps_what_is_written_where)
         size_t end = 1001 + (20 << 20);
         assert_memory_equal(back + end - 77, bytes + end, LARGE_BYTES - end);
     }
-    free(bytes);
-    free(back);
 }
 
 TEST(refuses_access_outside)

@@ -136,12 +136,11 @@ static uint32_t remembered(uint32_t a)
 /* A kernel that is refused would go to the driver whole. */
 static void check_it_is_evaluated(uint32_t trips)
 {
-    uint32_t *words;
+    own_memory uint32_t *words = NULL;
     size_t count;
     assert_int_equal(
         spirv_evaluate(device_evaluate, sizeof device_evaluate / 4, &trips, 1, &words, &count),
         WHIT_OK);
-    free(words);
 }
 
 TEST(evaluated_kernels_compute_the_same)

@@ -22,7 +22,7 @@ static struct tally tally_of(const uint32_t *words, size_t count)
 {
     struct tally tally = {0};
     size_t at = SPV_HEADER_WORDS;
-    bool *marked = calloc(words[SPV_BOUND_AT], sizeof *marked); /* the bound of ids */
+    own_memory bool *marked = calloc(words[SPV_BOUND_AT], sizeof *marked); /* the bound of ids */
     assert_non_null(marked);
     while (at < count) {
         uint32_t opcode = spv_op(words + at), length = spv_length(words + at);
@@ -39,7 +39,6 @@ static struct tally tally_of(const uint32_t *words, size_t count)
         tally.inexact += is_float_operation(opcode) && !marked[words[at + 2]];
         at += length;
     }
-    free(marked);
     return tally;
 }
 
@@ -55,10 +54,8 @@ static uint32_t *filled_in(enum kernel kernel, const struct gpu_spec *spec, size
 static struct tally specialized(enum kernel kernel, const struct gpu_spec *spec)
 {
     size_t count = 0;
-    uint32_t *words = filled_in(kernel, spec, &count);
-    struct tally tally = tally_of(words, count);
-    free(words);
-    return tally;
+    own_memory uint32_t *words = filled_in(kernel, spec, &count);
+    return tally_of(words, count);
 }
 
 TEST(constants_are_gone_and_floats_stay_exact)
@@ -87,7 +84,7 @@ TEST(evaluated_kernels_call_nothing)
         enum kernel kernel = (enum kernel)(i / 2);
         struct spirv_info whole, flat;
         size_t words_before = kernels[kernel].bytes / 4, count = 0;
-        uint32_t *words = filled_in(kernel, i % 2 ? &less : &all, &count);
+        own_memory uint32_t *words = filled_in(kernel, i % 2 ? &less : &all, &count);
         struct tally before = tally_of(kernels[kernel].words, words_before);
         struct tally after = tally_of(words, count);
         assert_true(spirv_inspect(kernels[kernel].words, words_before, &whole));
@@ -100,7 +97,6 @@ TEST(evaluated_kernels_call_nothing)
         assert_int_equal(after.calls, 0);
         assert_int_equal(after.inexact, 0);
         assert_int_equal(flat.bindings & ~whole.bindings, 0);
-        free(words);
     }
 }
 
@@ -188,7 +184,7 @@ TEST(bindings_follow_the_constants)
         size_t count = 0;
         struct spirv_info info;
         spec.SPEC_LOAD_PATH = path;
-        uint32_t *words = filled_in(KERNEL_CLOSEST, &spec, &count);
+        own_memory uint32_t *words = filled_in(KERNEL_CLOSEST, &spec, &count);
         assert_true(spirv_inspect(words, count, &info));
         assert_true(info.instructions > 0 &&
                     info.instructions < tally_of(words, count).instructions);
@@ -196,6 +192,5 @@ TEST(bindings_follow_the_constants)
         assert_int_equal(info.bindings >> BIND_NODE_TEXELS & 1, path == LOAD_TEXEL);
         assert_int_equal(info.bindings >> BIND_ENVIRONMENT & 1, 1);
         assert_int_equal(info.bindings >> BIND_COSTS & 1, 0); /* SPEC_COUNT is 0 */
-        free(words);
     }
 }

@@ -35,9 +35,10 @@ static double expected(const struct stretch *s, uint32_t x, uint32_t y, int chan
 static void check(uint32_t from_width, uint32_t from_height, uint32_t width, uint32_t height,
                   bool swaps)
 {
-    uint8_t *from = malloc((size_t)from_width * from_height * 4), *row = malloc((size_t)width * 4);
+    own_memory uint8_t *from = malloc((size_t)from_width * from_height * 4),
+                       *row = malloc((size_t)width * 4);
     const struct stretch s = {from, from_width, from_height, width, height, swaps};
-    void *scratch = malloc(stretch_scratch_bytes(&s));
+    own_memory void *scratch = malloc(stretch_scratch_bytes(&s));
     assert_true(from && row && scratch);
     fill(from, (size_t)from_width * from_height * 4);
     stretch_begin(&s, scratch);
@@ -53,9 +54,6 @@ static void check(uint32_t from_width, uint32_t from_height, uint32_t width, uin
         }
     }
     assert_true(largest <= 2.0);
-    free(scratch);
-    free(row);
-    free(from);
 }
 
 TEST(pixels_are_mixed_as_defined)

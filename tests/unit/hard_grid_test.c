@@ -198,8 +198,8 @@ static void cross_mesh(const struct level *level, const struct soup *soup,
                        struct crossings *tally)
 {
     const struct bvh_box *box = &accel->meshes[0].box;
-    struct seen *seen = see_mesh(soup, axis);
-    uint8_t *marks = calloc(soup->count, 1);
+    own_memory struct seen *seen = see_mesh(soup, axis);
+    own_memory uint8_t *marks = calloc(soup->count, 1);
     int64_t from[2], to[2];
     uint32_t turn = 0;
     assert_non_null(marks);
@@ -217,8 +217,6 @@ static void cross_mesh(const struct level *level, const struct soup *soup,
             mark_hits(level, accel, &ray, marks);
             count_crossings(soup, seen, &line, marks, tally);
         }
-    free(seen);
-    free(marks);
 }
 
 static void assert_crossings(struct soup made, int64_t step, bool block)

@@ -81,7 +81,7 @@ static void damage(struct sample sample)
     for (size_t length = 0; length < sample.size_bytes; ++length)
         assert_false(try_load(path, sample.data, length));
     uint64_t seed = 99;
-    uint8_t *copy = malloc(sample.size_bytes);
+    own_memory uint8_t *copy = malloc(sample.size_bytes);
     assert_non_null(copy);
     for (int i = 0; i < FLIPS; ++i) {
         memcpy(copy, sample.data, sample.size_bytes);
@@ -91,7 +91,6 @@ static void damage(struct sample sample)
             copy[random_bits(&seed) % range] = (uint8_t)random_bits(&seed);
         try_load(path, copy, sample.size_bytes);
     }
-    free(copy);
     free(sample.data);
 }
 

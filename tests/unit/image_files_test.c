@@ -148,7 +148,7 @@ TEST_IN(recipe_comes_back, folder_begin, folder_end)
     own_image image = fixture_floats(9, 7, 3);
     for (int i = 0; i < 3; ++i) {
         char *path = in_folder(names[i]);
-        whit_text *texts;
+        own_memory whit_text *texts = NULL;
         uint32_t count, found = 0;
         assert_int_equal(image_save(&warnings_log, &image, NULL, 0, path, recipe, RECIPE_COUNT),
                          WHIT_OK);
@@ -160,7 +160,6 @@ TEST_IN(recipe_comes_back, folder_begin, folder_end)
         }
         assert_int_equal(count, i == 2 ? 0 : RECIPE_COUNT);
         assert_int_equal(found, count);
-        free(texts);
     }
     assert_int_equal(messages.errors, 0);
 }
@@ -454,7 +453,7 @@ WRAPPED(void *, malloc, size_t size_bytes)
 static uint8_t *repeat_text(const char *path, size_t *size_bytes)
 {
     enum { TIMES = 90, HEAD = 8, IHDR = 25, TAIL = 4 };
-    uint8_t *file;
+    own_memory uint8_t *file = NULL;
     size_t file_bytes;
     assert_int_equal(file_read(NULL, NULL, path, 0, &file, &file_bytes), WHIT_OK);
     uint8_t *text = file + HEAD + IHDR;
@@ -469,7 +468,6 @@ static uint8_t *repeat_text(const char *path, size_t *size_bytes)
     size_t rest = file_bytes - (size_t)(text - file);
     memcpy(at, text, rest);
     *size_bytes = (size_t)(at - many) + rest;
-    free(file);
     return many;
 }
 
@@ -479,14 +477,13 @@ TEST_IN(png_texts_take_what_they_may, folder_begin, folder_end)
     char *path = in_folder("a.png");
     png_write_raw(path, PNG_COLOR_TYPE_GRAY, 8, PNG_INTERLACE_NONE, TEXT_BYTES);
     size_t size_bytes;
-    uint8_t *file = repeat_text(path, &size_bytes);
+    own_memory uint8_t *file = repeat_text(path, &size_bytes);
     own_image image = {0};
     fixture_put(path, file, size_bytes);
     const struct image_source source = {&warnings_log, path, file, size_bytes};
     malloc_bytes = 0;
     assert_int_equal(image_decode(&source, &image), WHIT_OK); /* directly, not in a child */
     assert_in_range(malloc_bytes, TEXT_BYTES, FREE_BYTES + 10 * size_bytes + (1 << 20));
-    free(file);
 }
 
 TEST(sizes_out_of_range)

@@ -6,7 +6,7 @@
 static const char *write_gltf(const void *data, size_t size_bytes, const char *views,
                               const char *accessors, const char *primitives)
 {
-    char *text =
+    own_memory char *text =
         string_format("{'asset':{'version':'2.0'},'buffers':[{'byteLength':%zu,'uri':'b.bin'}],"
                       "'bufferViews':[%s],'accessors':[%s],'meshes':[{'primitives':[%s]}],"
                       "'nodes':[{'mesh':0}]}",
@@ -15,9 +15,7 @@ static const char *write_gltf(const void *data, size_t size_bytes, const char *v
     for (char *at = text; (at = strchr(at, '\''));)
         *at = '"';
     put_data("b.bin", data, size_bytes);
-    const char *path = put_text("a.gltf", text);
-    free(text);
-    return path;
+    return put_text("a.gltf", text);
 }
 
 static const struct scene_mesh *load(const char *path)
@@ -79,7 +77,7 @@ TEST_IN(components_become_floats, fixture_begin, fixture_end)
         for (int k = 0; k < rows[i].count; k++)
             memcpy(bytes + 4 + 20 + k * rows[i].bytes, &rows[i].values[k], (size_t)rows[i].bytes);
         struct data data = triangle_data(bytes, sizeof bytes);
-        char *accessors = string_format(
+        own_memory char *accessors = string_format(
             POSITIONS ",{'bufferView':1,'byteOffset':4,'componentType':%d,'normalized':%s,"
                       "'count':3,'type':'VEC%d'}",
             rows[i].component, rows[i].normalized, rows[i].count);
@@ -90,7 +88,6 @@ TEST_IN(components_become_floats, fixture_begin, fixture_end)
                             accessors, "{'attributes':{'POSITION':0,'COLOR_0':1}}"));
         assert_int_equal(mesh->indices[1], 1);
         assert_floats(mesh->colors + 4, rows[i].wanted, 4, accessors);
-        free(accessors);
     }
 }
 
@@ -114,7 +111,7 @@ TEST_IN(sparse_elements_are_replaced, fixture_begin, fixture_end)
         memcpy(bytes + 8, values, sizeof values);
         memcpy(bytes + 24, half, sizeof half);
         struct data data = triangle_data(bytes, sizeof bytes);
-        char *accessors = string_format(
+        own_memory char *accessors = string_format(
             POSITIONS ",{%s'componentType':5126,'count':3,'type':'VEC2','sparse':{'count':2,"
                       "'indices':{'bufferView':1,'componentType':%d},"
                       "'values':{'bufferView':1,'byteOffset':8}}}",
@@ -129,7 +126,6 @@ TEST_IN(sparse_elements_are_replaced, fixture_begin, fixture_end)
         for (int k = 0; k < 6; k++)
             wanted[k] = k % 2 && rows[i].wanted[k] > 4 ? 1 - rows[i].wanted[k] : rows[i].wanted[k];
         assert_floats(mesh->uvs[0], wanted, 6, accessors);
-        free(accessors);
     }
 }
 
@@ -159,20 +155,19 @@ TEST_IN(modes_and_indices, fixture_begin, fixture_end)
         for (uint32_t k = 0; k < rows[i].corners && rows[i].bytes; k++)
             memcpy(data.indices + k * (uint32_t)rows[i].bytes, &rows[i].indices[k],
                    (size_t)rows[i].bytes);
-        char *accessors = string_format(
+        own_memory char *accessors = string_format(
             "{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3'},"
             "{'bufferView':0,'byteOffset':48,'componentType':%d,'count':%u,'type':'SCALAR'}",
             rows[i].component, rows[i].corners);
-        char *primitive = string_format("{'mode':%d,'attributes':{'POSITION':0}%s}", rows[i].mode,
-                                        rows[i].component ? ",'indices':1" : "");
+        own_memory char *primitive =
+            string_format("{'mode':%d,'attributes':{'POSITION':0}%s}", rows[i].mode,
+                          rows[i].component ? ",'indices':1" : "");
         const struct scene_mesh *mesh = load(
             write_gltf(&data, sizeof data, "{'buffer':0,'byteLength':72}", accessors, primitive));
         assert_int_equal(mesh->triangle_count, rows[i].triangles);
         for (uint32_t k = 0; k < 3 * rows[i].triangles; k++)
             if (mesh->indices[k] != rows[i].wanted[k])
                 fail_msg("%s %s: corner %u is %u", primitive, accessors, k, mesh->indices[k]);
-        free(accessors);
-        free(primitive);
     }
     assert_true(fixture_noted("meshes[0].primitives[0]: 1 of 2 triangles are damaged and"));
 }
@@ -289,18 +284,16 @@ static const char *write_packed(const uint8_t *bytes, unsigned vertices, const c
     memcpy(data, bytes, sizeof packed);
     for (size_t i = 0; i < 4; i++)
         memcpy(data + 152 + 12 * i, (const float[3]){0, 0, -1}, 12);
-    char *accessors = string_format(
+    own_memory char *accessors = string_format(
         "{'componentType':5126,'count':%u,'type':'VEC3'},{%s,'count':%u,'type':'VEC2'},"
         "{'componentType':5121,'normalized':true,'count':%u,'type':'VEC3'},"
         "{'componentType':5125,'count':6,'type':'SCALAR'},"
         "{'bufferView':1,'componentType':5126,'count':%u,'type':'VEC3'}",
         vertices, uv_type, vertices, vertices, vertices);
-    const char *path = write_gltf(data, sizeof data,
-                                  "{'buffer':0,'byteLength':150},"
-                                  "{'buffer':0,'byteOffset':152,'byteLength':48}",
-                                  accessors, primitive);
-    free(accessors);
-    return path;
+    return write_gltf(data, sizeof data,
+                      "{'buffer':0,'byteLength':150},"
+                      "{'buffer':0,'byteOffset':152,'byteLength':48}",
+                      accessors, primitive);
 }
 
 /* Normals are not in the Draco data: they come from their accessor. */

@@ -35,7 +35,7 @@ static const char *write_gltf(const char *members)
 {
     char base64[4 * sizeof data / 3 + 1];
     append_base64(base64, (const uint8_t *)data, sizeof data);
-    char *text = string_format(
+    own_memory char *text = string_format(
         "{\"asset\":{\"version\":\"2.0\"},"
         "\"buffers\":[{\"byteLength\":%zu,\"uri\":\"data:application/octet-stream;base64,%s\"}],"
         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],"
@@ -58,9 +58,7 @@ static const char *write_gltf(const char *members)
         sizeof data, base64, sizeof data, strstr(members, "\"materials\"") ? ",\"material\":0" : "",
         members);
     assert_non_null(text);
-    const char *path = put_text("a.gltf", text);
-    free(text);
-    return path;
+    return put_text("a.gltf", text);
 }
 
 static const struct scene *load(const char *members)

@@ -365,7 +365,7 @@ TEST_IN(faces_of_very_many_corners_are_refused, fixture_begin, fixture_end)
 
 TEST_IN(faces_of_a_ply_are_counted_too, fixture_begin, fixture_end)
 {
-    char *corners = circle("", 1025), *text = NULL;
+    own_memory char *corners = circle("", 1025), *text = NULL;
     size_t bytes;
     FILE *file = open_memstream(&text, &bytes);
     assert_non_null(file);
@@ -380,8 +380,6 @@ TEST_IN(faces_of_a_ply_are_counted_too, fixture_begin, fixture_end)
     assert_int_equal(fclose(file), 0);
     fixture_refused(put_text("a.ply", text),
                     "a.ply: face 1 has 1025 corners, at most 1024 are possible");
-    free(corners);
-    free(text);
 }
 
 /* assimp 5.2 crashes on a face index far out of range; whit must not. */

@@ -243,7 +243,7 @@ TEST(pngs_take_what_their_header_tells_of)
     enum { SIDE = 2048, IHDR_WIDTH = 16 };
     (void)state;
     struct bytes file = {0};
-    uint8_t *pixels = array_alloc_zeroed((size_t)SIDE * SIDE, 1);
+    own_memory uint8_t *pixels = array_alloc_zeroed((size_t)SIDE * SIDE, 1);
     const char *reason = "";
     assert_non_null(pixels);
     assert_true(stbi_write_png_to_func(append, &file, SIDE, SIDE, 1, pixels, SIDE));
@@ -252,7 +252,6 @@ TEST(pngs_take_what_their_header_tells_of)
     largest_block = 0;
     check_reason(&file, "more than its header tells of");
     assert_in_range(largest_block, 1, (1 << 18) + 2 * file.count + 16 * 3 * 2);
-    free(pixels);
     free(file.data);
 }
 

@@ -52,15 +52,15 @@ static const char *write_gltf(const char *const *images, uint32_t count)
             lists[k] = longer[k];
         }
     }
-    char *text = string_format("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":24,"
-                               "\"uri\":\"data:;base64," TGA_BASE64 "\"}],"
-                               "\"bufferViews\":[{\"buffer\":0,\"byteLength\":24}],"
-                               "\"images\":[%s],\"textures\":[%s],\"materials\":[%s]}",
-                               lists[0], lists[1], lists[2]);
+    own_memory char *text =
+        string_format("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":24,"
+                      "\"uri\":\"data:;base64," TGA_BASE64 "\"}],"
+                      "\"bufferViews\":[{\"buffer\":0,\"byteLength\":24}],"
+                      "\"images\":[%s],\"textures\":[%s],\"materials\":[%s]}",
+                      lists[0], lists[1], lists[2]);
     const char *path = put_text("a.gltf", text);
     for (int k = 0; k < 3; k++)
         free(lists[k]);
-    free(text);
     return path;
 }
 

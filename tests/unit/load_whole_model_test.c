@@ -109,11 +109,9 @@ static const char collada[] =
 static const char *write_collada_uvs(const char *effect, const char *uvs, const char *libraries,
                                      const char *nodes)
 {
-    char *text = string_format(collada, effect, uvs, libraries, nodes);
+    own_memory char *text = string_format(collada, effect, uvs, libraries, nodes);
     assert_non_null(text);
-    const char *path = put_text("a.dae", text);
-    free(text);
-    return path;
+    return put_text("a.dae", text);
 }
 
 static const char *write_collada(const char *effect, const char *libraries, const char *nodes)
@@ -267,11 +265,9 @@ static const char *write_fbx(int corners)
     char indices[4096] = "";
     for (int i = 0; i + 1 < corners; i++)
         strcat(indices, i % 2 ? "1," : "0,");
-    char *text = string_format(fbx, corners, indices);
+    own_memory char *text = string_format(fbx, corners, indices);
     assert_non_null(text);
-    const char *path = put_text("a.fbx", text);
-    free(text);
-    return path;
+    return put_text("a.fbx", text);
 }
 
 TEST_IN(faces_of_too_many_corners_are_refused, fixture_begin, fixture_end)
@@ -477,12 +473,12 @@ TEST_IN(damaged_files_end_in_a_scene_or_one_error, fixture_begin, fixture_end)
                            : i == 1 ? write_collada("e", moving, moving_nodes)
                            : i == 2 ? write_fbx(3)
                                     : write_3mf("unit='inch'", false);
-        uint8_t *data = NULL;
+        own_memory uint8_t *data = NULL;
         size_t size_bytes = 0;
         uint32_t loaded = 0;
         assert_int_equal(file_read(&fixture.log, NULL, path, 0, &data, &size_bytes), WHIT_OK);
         assert_true(load_damaged(names[i], data, size_bytes)); /* as it is */
-        uint8_t *damaged = malloc(size_bytes + RUN_MAX);
+        own_memory uint8_t *damaged = malloc(size_bytes + RUN_MAX);
         assert_non_null(damaged);
         for (uint32_t k = 0; k < DAMAGES; k++) {
             size_t bytes = damage(&random, data, size_bytes, damaged);
@@ -490,7 +486,5 @@ TEST_IN(damaged_files_end_in_a_scene_or_one_error, fixture_begin, fixture_end)
         }
         print_message("%s: %u of %u loaded\n", names[i], loaded, DAMAGES);
         assert_in_range(loaded, 1, DAMAGES - 1);
-        free(damaged);
-        free(data);
     }
 }

@@ -79,8 +79,8 @@ static void check_levels(uint32_t width, uint32_t height, enum mipmap_kind kind)
 {
     size_t texels = (size_t)width * height;
     uint64_t random = texels + kind;
-    uint8_t *bytes = malloc(4 * texels);
-    double *rgba = malloc(4 * texels * sizeof *rgba);
+    own_memory uint8_t *bytes = malloc(4 * texels);
+    own_memory double *rgba = malloc(4 * texels * sizeof *rgba);
     assert_non_null(bytes);
     assert_non_null(rgba);
     for (size_t i = 0; i < 4 * texels; ++i) {
@@ -101,8 +101,6 @@ static void check_levels(uint32_t width, uint32_t height, enum mipmap_kind kind)
         }
     }
     free(levels);
-    free(bytes);
-    free(rgba);
 }
 
 TEST(texels_are_means_of_what_they_cover)
@@ -120,11 +118,10 @@ TEST(one_colour_stays)
     for (int code = 0; code < 256; ++code) {
         for (enum mipmap_kind kind = MIPMAP_LINEAR; kind <= MIPMAP_COVER; ++kind) {
             memset(rgba, code, sizeof rgba);
-            uint8_t *levels = mipmap_make(rgba, 3, 5, kind);
+            own_memory uint8_t *levels = mipmap_make(rgba, 3, 5, kind);
             assert_non_null(levels);
             for (int i = 0; i < 4 * 3; ++i) /* of 1 x 2 and 1 x 1 texels */
                 assert_int_equal(levels[i], code);
-            free(levels);
         }
     }
 }
@@ -133,22 +130,19 @@ TEST(light_is_averaged_and_bytes_are_not)
 {
     const uint8_t checker[16] = {255, 255, 255, 255, 0,   0,   0,   255,
                                  0,   0,   0,   255, 255, 255, 255, 255};
-    uint8_t *light = mipmap_make(checker, 2, 2, MIPMAP_SRGB);
-    uint8_t *bytes = mipmap_make(checker, 2, 2, MIPMAP_LINEAR);
+    own_memory uint8_t *light = mipmap_make(checker, 2, 2, MIPMAP_SRGB);
+    own_memory uint8_t *bytes = mipmap_make(checker, 2, 2, MIPMAP_LINEAR);
     assert_true(light && bytes);
     assert_int_equal(light[0], 188); /* half the light */
     assert_int_equal(bytes[0], 127);
-    free(light);
-    free(bytes);
 }
 
 TEST(what_covers_nothing_tints_nothing)
 {
     const uint8_t leaf[8] = {0, 200, 0, 255, 255, 0, 0, 0};
-    uint8_t *cover = mipmap_make(leaf, 2, 1, MIPMAP_COVER);
+    own_memory uint8_t *cover = mipmap_make(leaf, 2, 1, MIPMAP_COVER);
     assert_non_null(cover);
     assert_memory_equal(cover, ((const uint8_t[4]){0, 200, 0, 127}), 4);
-    free(cover);
 }
 
 TEST(slots_are_averaged_as_what_they_are)

@@ -101,7 +101,7 @@ static inline struct unlike trace_beside_twin(const struct fixture *f, bool any,
                                          .any = any,
                                          .skip_instance = HIT_NONE,
                                          .skip_primitive = HIT_NONE};
-    struct gpu_cost *costs = params->count ? array_alloc(count, sizeof *costs) : NULL;
+    own_memory struct gpu_cost *costs = params->count ? array_alloc(count, sizeof *costs) : NULL;
     struct unlike unlike = {0};
     uint32_t status = 0;
     assert_int_equal(renderer_trace(f->renderer, rays, count, any, hits, costs), WHIT_OK);
@@ -116,7 +116,6 @@ static inline struct unlike trace_beside_twin(const struct fixture *f, bool any,
             cost_add(sum, &cost);
     }
     assert_int_equal(status, 0);
-    free(costs);
     return unlike;
 }
 
@@ -135,7 +134,7 @@ static inline uint32_t count_met(const struct gpu_hit *hits, uint32_t count)
 static inline void check_rays(const struct fixture *f, const char *label,
                               const struct gpu_ray *rays, uint32_t count, struct gpu_hit *hits)
 {
-    struct gpu_hit *any = array_alloc(count, sizeof *any);
+    own_memory struct gpu_hit *any = array_alloc(count, sizeof *any);
     assert_non_null(any);
     struct unlike closest = trace_beside_twin(f, false, rays, count, hits, NULL);
     struct unlike blocked = trace_beside_twin(f, true, rays, count, any, NULL);
@@ -149,7 +148,6 @@ static inline void check_rays(const struct fixture *f, const char *label,
     if (closest.hits + blocked.hits + closest.costs + blocked.costs + torn > 0)
         fail_msg("%s: device and twin differ", label);
     assert_in_range(met, count / 10, count - 1);
-    free(any);
 }
 
 #endif

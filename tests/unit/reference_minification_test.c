@@ -10,13 +10,11 @@ enum { SIDE = 64 };
 static uint32_t add_noise(struct scene *scene, uint32_t width, uint32_t height, bool alpha)
 {
     uint64_t random = width * 31 + height;
-    uint8_t *rgba = array_alloc((size_t)width * height, 4);
+    own_memory uint8_t *rgba = array_alloc((size_t)width * height, 4);
     assert_non_null(rgba);
     for (size_t i = 0; i < 4 * (size_t)width * height; ++i)
         rgba[i] = i % 4 == 3 && !alpha ? 255 : (uint8_t)random_below(&random, 256);
-    uint32_t texture = scene_put_texture(scene, width, height, rgba);
-    free(rgba);
-    return texture;
+    return scene_put_texture(scene, width, height, rgba);
 }
 
 /* Uses a texture that is repeated `times` times across one unit of uv. */

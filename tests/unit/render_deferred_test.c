@@ -23,8 +23,8 @@ static whit_renderer_params exact_params(bool count)
 TEST(batches_are_those_of_looks_in_place)
 {
     const whit_renderer_params counted = exact_params(true), deferred = exact_params(false);
-    struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
-    struct gpu_hit *hits = array_alloc(4 * (size_t)RAYS, sizeof *hits);
+    own_memory struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+    own_memory struct gpu_hit *hits = array_alloc(4 * (size_t)RAYS, sizeof *hits);
     assert_true(rays && hits);
     own_fixture f = fixture_open(ring_scene(), NULL, &counted);
     aim_rays(&f, rays, RAYS, 11);
@@ -44,8 +44,6 @@ TEST(batches_are_those_of_looks_in_place)
         assert_true(count > RAYS / 20 && count < RAYS);
         assert_int_equal(differ, 0);
     }
-    free(rays);
-    free(hits);
 }
 
 /* ---- Pictures ---- */

@@ -33,8 +33,8 @@ static uint32_t count_unlike_rational(const struct fixture *f, const struct gpu_
 
 static void check_levels(struct scene *scene, const whit_accel_params *accel_params)
 {
-    struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
-    struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
+    own_memory struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+    own_memory struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
     assert_true(rays && hits);
     whit_renderer_params params = {.width = 16, .height = 16, .count = true};
     own_fixture f = fixture_open(scene, accel_params, &params);
@@ -46,8 +46,6 @@ static void check_levels(struct scene *scene, const whit_accel_params *accel_par
         if (level == NUMERICS_EXACT)
             assert_int_equal(count_unlike_rational(&f, rays, hits), 0);
     }
-    free(rays);
-    free(hits);
 }
 
 TEST(one_mesh)
@@ -104,8 +102,8 @@ TEST(only_fast_leaks)
     scene_put(scene, mesh_sphere(2.0, 80, 40), NULL);
     whit_renderer_params params = {.width = 16, .height = 16, .packets = WHIT_PACKETS_ON};
     own_fixture f = fixture_open(scene, NULL, &params);
-    struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
-    struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
+    own_memory struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+    own_memory struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
     assert_true(rays && hits);
     aim_rays(&f, rays, RAYS, 21);
     uint64_t state_random = 5;
@@ -130,8 +128,6 @@ TEST(only_fast_leaks)
     assert_true(leaks[NUMERICS_FAST] > 0); /* else the rays are not hard enough */
     assert_int_equal(leaks[NUMERICS_WATERTIGHT], 0);
     assert_int_equal(leaks[NUMERICS_EXACT], 0);
-    free(rays);
-    free(hits);
 }
 
 static const whit_renderer_params glass_params = {

@@ -11,8 +11,8 @@ static void check_twin(struct scene *scene, const whit_accel_params *params, con
 {
     enum { RAYS = 100000 };
     own_fixture f = fixture_open(scene, params, NULL);
-    struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
-    struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
+    own_memory struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+    own_memory struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
     assert_true(rays && hits);
     for (uint32_t i = 0; i < RAYS; ++i) {
         rays[i] = ray_at_spheres(&scene->meshes[0], i, 1000.0);
@@ -21,8 +21,6 @@ static void check_twin(struct scene *scene, const whit_accel_params *params, con
     }
     check_rays(&f, label, rays, RAYS, hits);
     assert_true(count_met(hits, RAYS) > RAYS / 4);
-    free(rays);
-    free(hits);
 }
 
 TEST(spheres_equal_twin)

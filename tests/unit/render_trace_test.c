@@ -12,9 +12,9 @@
 static void check_any_against_closest(struct fixture *f, const char *label)
 {
     const uint32_t many = 6 * RAYS;
-    struct gpu_ray *rays = array_alloc(many, sizeof *rays);
-    struct gpu_hit *closest = array_alloc(many, sizeof *closest);
-    struct gpu_hit *any = array_alloc(many, sizeof *any);
+    own_memory struct gpu_ray *rays = array_alloc(many, sizeof *rays);
+    own_memory struct gpu_hit *closest = array_alloc(many, sizeof *closest);
+    own_memory struct gpu_hit *any = array_alloc(many, sizeof *any);
     assert_true(rays && closest && any);
     for (uint32_t i = 0; i < many / RAYS; ++i)
         aim_rays(f, rays + (size_t)i * RAYS, RAYS, 1000 + i);
@@ -39,16 +39,13 @@ static void check_any_against_closest(struct fixture *f, const char *label)
     assert_true(blocked > many / 100);
     assert_true(blocked < many);
     assert_int_equal(bad, 0);
-    free(rays);
-    free(closest);
-    free(any);
 }
 
 static void check_scene(struct scene *scene, const char *label)
 {
     own_fixture f = fixture_open(scene, NULL, NULL);
-    struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
-    struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
+    own_memory struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+    own_memory struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
     assert_true(rays && hits);
     assert_int_equal(f.accel->single_identity, f.scene->instance_count == 1);
     aim_rays(&f, rays, RAYS, 7);
@@ -62,8 +59,6 @@ static void check_scene(struct scene *scene, const char *label)
             fail_msg("%s: tree unlike brute force at ray %u", label, i);
     }
     check_any_against_closest(&f, label);
-    free(rays);
-    free(hits);
 }
 
 static struct scene_mesh far_sphere(void)
@@ -179,8 +174,8 @@ static void check_packets(struct scene *scene, const whit_accel_params *params, 
     const uint32_t many = cases_of(70000); /* the last packet is not full */
     const whit_renderer_params on = {.width = 16, .height = 16, .packets = WHIT_PACKETS_ON};
     own_fixture f = fixture_open(scene, params, &on);
-    struct gpu_ray *rays = array_alloc(many, sizeof *rays);
-    struct gpu_hit *hits = array_alloc(many, sizeof *hits);
+    own_memory struct gpu_ray *rays = array_alloc(many, sizeof *rays);
+    own_memory struct gpu_hit *hits = array_alloc(many, sizeof *hits);
     assert_true(rays && hits);
     aim_packets(&f, rays, many);
     for (int any = 0; any < 2; ++any) {
@@ -195,8 +190,6 @@ static void check_packets(struct scene *scene, const whit_accel_params *params, 
             assert_true(together > many / 2 && together < many);
         }
     }
-    free(rays);
-    free(hits);
 }
 
 TEST(packets_equal_twin)
@@ -229,8 +222,8 @@ static struct gpu_ray ray_along_axis(const struct scene *scene, uint32_t i, uint
    keep it; those that end one float before it are empty. */
 static void check_ends(const struct fixture *f, struct gpu_ray *rays, uint32_t count)
 {
-    struct gpu_hit *first = array_alloc(count, sizeof *first);
-    struct gpu_hit *hits = array_alloc(count, sizeof *hits);
+    own_memory struct gpu_hit *first = array_alloc(count, sizeof *first);
+    own_memory struct gpu_hit *hits = array_alloc(count, sizeof *hits);
     assert_true(first && hits);
     uint32_t lost = 0, at_start = 0;
     uint32_t unlike = trace_beside_twin(f, false, rays, count, first, NULL).hits;
@@ -254,8 +247,6 @@ static void check_ends(const struct fixture *f, struct gpu_ray *rays, uint32_t c
         level_names[f->renderer->params.numerics], count, met, at_start, unlike, lost, early);
     assert_int_equal(unlike + lost + early, 0);
     assert_true(met > count / 4 && at_start > count / 10);
-    free(first);
-    free(hits);
 }
 
 TEST(integers_equal_twin)
@@ -263,13 +254,12 @@ TEST(integers_equal_twin)
     const uint32_t levels[] = {NUMERICS_WATERTIGHT, NUMERICS_EXACT};
     for (int l = 0; l < 2; ++l) {
         own_fixture f = open_at(integer_ring(), levels[l]);
-        struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
+        own_memory struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
         uint64_t random = 3;
         assert_non_null(rays);
         for (uint32_t i = 0; i < RAYS; ++i)
             rays[i] = ray_along_axis(f.scene, i, &random);
         check_ends(&f, rays, RAYS);
-        free(rays);
     }
 }
 

@@ -47,7 +47,7 @@ static void check_distances(const struct fixture *f, const whit_camera *camera,
                                            .skip_primitive = HIT_NONE};
     bool exact = r->params.numerics == WHIT_NUMERICS_EXACT; /* shading uses the t of floats */
     size_t count = (size_t)view->width * view->height;
-    struct gpu_ray *rays = malloc(count * sizeof *rays);
+    own_memory struct gpu_ray *rays = malloc(count * sizeof *rays);
     assert_non_null(rays);
     assert_int_equal(camera_all_rays(NULL, &r->pose, camera, view->width, view->height, rays),
                      WHIT_OK);
@@ -60,7 +60,6 @@ static void check_distances(const struct fixture *f, const whit_camera *camera,
         if (hit.t != view->pixels[i] && !(exact && off <= 0x1p-18 * (double)hit.t))
             fail_msg("pixel %zu is %.9g away, not %.9g", i, (double)view->pixels[i], (double)hit.t);
     }
-    free(rays);
 }
 
 /* Compares the views with the pictures of their cameras, which `single` draws. */

@@ -207,7 +207,7 @@ TEST(references_count_by_name)
 static struct scene *mix(const struct loaded *before, const struct loaded *after, bool all,
                          whit_part_kind kind, const char *name)
 {
-    bool *back = calloc(before->parts.count, sizeof *back);
+    own_memory bool *back = calloc(before->parts.count, sizeof *back);
     struct scene *made = NULL;
     uint32_t found = 0;
     assert_non_null(back);
@@ -218,7 +218,6 @@ static struct scene *mix(const struct loaded *before, const struct loaded *after
     }
     assert_true(!name || found == 1);
     assert_int_equal(scene_mix(NULL, &before->side, &after->side, back, &made), WHIT_OK);
-    free(back);
     return made;
 }
 

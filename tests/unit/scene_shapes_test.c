@@ -16,7 +16,7 @@ static int compare_edges(const void *x, const void *y)
 static void assert_closed(const struct scene_mesh *mesh)
 {
     size_t count = 3 * (size_t)mesh->triangle_count;
-    struct edge *edges = calloc(count, sizeof *edges);
+    own_memory struct edge *edges = calloc(count, sizeof *edges);
     assert_non_null(edges);
     for (size_t i = 0; i < count; ++i) {
         size_t next = i % 3 == 2 ? i - 2 : i + 1;
@@ -34,7 +34,6 @@ static void assert_closed(const struct scene_mesh *mesh)
         if (i + 2 < count)
             assert_int_not_equal(compare_edges(&edges[i], &edges[i + 2]), 0);
     }
-    free(edges);
 }
 
 static double volume(const struct scene_mesh *mesh)
@@ -235,7 +234,7 @@ static double distance(const double *a, const double *b)
 
 TEST(sphereflake)
 {
-    double *spheres;
+    own_memory double *spheres = NULL;
     uint32_t count;
     assert_int_equal(shape_sphereflake(1.0, 2, &spheres, &count), WHIT_OK);
     assert_int_equal(count, 1 + 9 + 81);
@@ -251,7 +250,6 @@ TEST(sphereflake)
             assert_true(distance(a, b) > a[3] + b[3] - 1e-12);
         }
     }
-    free(spheres);
 }
 
 TEST(senseless_parameters_are_refused)

@@ -32,14 +32,12 @@ TEST_IN(kernels_without_a_user_are_those_of_the_build, compiler_begin, compiler_
         const struct shader_request request = {.kernel = name};
         own_shader_code code = {0};
         assert_int_equal(shader_compile(compiler, NULL, &request, &code, &errors), WHIT_OK);
-        char *built = disassemble(kernels[i].words, kernels[i].bytes);
-        char *made = disassemble(code.words, code.bytes);
+        own_memory char *built = disassemble(kernels[i].words, kernels[i].bytes);
+        own_memory char *made = disassemble(code.words, code.bytes);
         assert_true(strlen(built) > 1000 && strstr(built, "NoContraction"));
         assert_true(strcmp(built, made) == 0);
         assert_int_equal(code.loop_count, 0);
         assert_true(code.instructions > 10);
-        free(built);
-        free(made);
     }
     assert_string_equal(messages.text, "");
 }
@@ -512,7 +510,8 @@ TEST(one_process_is_kept_and_none_is_left)
 TEST(limits_are_kept)
 {
     volatile bool cancel = true;
-    char *long_text = repeat("float f(float x, int n) { return x", " + sin(x)\n", 60000, "; }");
+    own_memory char *long_text =
+        repeat("float f(float x, int n) { return x", " + sin(x)\n", 60000, "; }");
     const struct {
         whit_shader_limits limits;
         double clock_s;
@@ -533,7 +532,6 @@ TEST(limits_are_kept)
         shader_compiler_destroy(compiler);
         assert_int_equal(children(), 0);
     }
-    free(long_text);
 }
 
 /* The process that is kept ends with its parent. */

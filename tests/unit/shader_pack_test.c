@@ -22,11 +22,10 @@ static char *packed(void)
                                        .text = (char *)(uintptr_t)files[i].text,
                                        .bytes = strlen(files[i].text)};
     const struct shader_text all = {.files = read, .file_count = 2};
-    char *made = shader_pack_write(&all, &why);
+    own_memory char *made = shader_pack_write(&all, &why);
     assert_non_null(made);
     assert_true(strlen(made) < sizeof text);
     strcpy(text, made);
-    free(made);
     return text;
 }
 

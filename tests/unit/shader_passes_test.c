@@ -84,13 +84,11 @@ TEST_IN(loops_have_fuel_and_lines, compiler_begin, compiler_end)
         assert_int_equal(compile_files(looping[i].content, NULL, true, &trusted), WHIT_OK);
         assert_valid(&trusted);
         assert_int_equal(trusted.loop_count, 0);
-        char *with = disassemble(code.words, code.bytes);
-        char *without = disassemble(trusted.words, trusted.bytes);
+        own_memory char *with = disassemble(code.words, code.bytes);
+        own_memory char *without = disassemble(trusted.words, trusted.bytes);
         assert_int_equal(count(with, "OpLoopMerge"), looping[i].count);
         assert_int_equal(count(with, "OpISub"), count(without, "OpISub") + looping[i].count);
         assert_int_equal(count(with, "OpUnreachable"), 0);
-        free(with);
-        free(without);
     }
 }
 

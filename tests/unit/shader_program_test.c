@@ -59,7 +59,7 @@ TEST(sliders_are_declared_by_plain_names)
 {
     whit_shader shader;
     assert_int_equal(read_text(whole, &shader), WHIT_OK);
-    char *text = shader_sliders_declare(&shader);
+    own_memory char *text = shader_sliders_declare(&shader);
     assert_string_equal(text, "float bands = slider(0u);\n"
                               "vec3 rim = vec3(slider(1u), slider(2u), slider(3u));\n"
                               "bool on = slider(4u) != 0.0;\n"
@@ -68,7 +68,6 @@ TEST(sliders_are_declared_by_plain_names)
                               "const int mode_plain = 0;\n"
                               "const int mode_warm = 1;\n"
                               "const int mode_cold = 2;\n");
-    free(text);
     shader_text_free(&shader.text);
 }
 

@@ -143,7 +143,7 @@ TEST_IN(what_is_no_file_is_refused_at_its_include, begin, end)
     assert_int_equal(symlink(outside, in_folder("link")), 0);
     assert_int_equal(symlink("/etc", in_folder("inside")), 0);
     put_text("swapped.glsl", "\n\n#include \"a.glsl\"\n");
-    char *large = malloc((1 << 20) + 1);
+    own_memory char *large = malloc((1 << 20) + 1);
     memset(large, '\n', (1 << 20) + 1);
     put_file(in_folder("large.glsl"), large, (1 << 20) + 1);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
@@ -156,7 +156,6 @@ TEST_IN(what_is_no_file_is_refused_at_its_include, begin, end)
     put_text("a.glsl", FUNCTION "#include \"large.glsl\"");
     assert_int_equal(read_first(), WHIT_OK);
     assert_int_equal(text.files[1].bytes, 1 << 20);
-    free(large);
     unlink(outside);
 }
 

@@ -16,7 +16,7 @@ static inline double sphere_random(void)
    Every tenth sphere repeats the one before, so that rays hit both at the same distance. */
 static inline struct scene_mesh scattered_spheres(uint32_t count, double spread, double max)
 {
-    double *spheres = malloc(4 * sizeof(double) * count);
+    own_memory double *spheres = malloc(4 * sizeof(double) * count);
     assert_non_null(spheres);
     for (uint32_t i = 0; i < count; ++i) {
         for (size_t k = 0; k < 3; ++k)
@@ -25,9 +25,7 @@ static inline struct scene_mesh scattered_spheres(uint32_t count, double spread,
         if (i % 10 == 9)
             memcpy(&spheres[4 * (size_t)i], &spheres[4 * (size_t)i - 4], 4 * sizeof(double));
     }
-    struct scene_mesh mesh = mesh_balls(spheres, count);
-    free(spheres);
-    return mesh;
+    return mesh_balls(spheres, count);
 }
 
 /* A scene of `mesh`, not frozen: once without a transform and, with `placed`, also as eleven

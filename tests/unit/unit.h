@@ -52,4 +52,14 @@ int unit_run(CMFixtureFunction begin, CMFixtureFunction end);
    what it returns. */
 void unit_at_end(int (*end)(int failed));
 
+static inline void drop_memory(void *at)
+{
+    void *memory;
+    memcpy(&memory, at, sizeof memory);
+    free(memory);
+}
+
+/* Freed at the end of its block: own_memory char *text = ...; */
+#define own_memory __attribute__((cleanup(drop_memory)))
+
 #endif

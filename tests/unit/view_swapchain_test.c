@@ -21,12 +21,10 @@ struct shop {
 /* Opens the ui with a font of this system; the package fonts-dejavu-core is required. */
 static whit_result open_ui(struct shop *shop)
 {
-    uint8_t *font;
+    own_memory uint8_t *font = NULL;
     size_t font_bytes;
     assert_true(font_load(&font, &font_bytes));
-    whit_result result = ui_create(shop->swapchain, 1.0f, font, font_bytes, &shop->ui);
-    free(font);
-    return result;
+    return ui_create(shop->swapchain, 1.0f, font, font_bytes, &shop->ui);
 }
 
 static whit_result shop_open(struct shop *shop, bool validation)
