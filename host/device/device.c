@@ -107,9 +107,12 @@ static whit_result logical_create(struct device *device)
             (PFN_vkGetPipelineExecutableStatisticsKHR)vkGetDeviceProcAddr(
                 device->vk, "vkGetPipelineExecutableStatisticsKHR");
     }
-    if (device->debug_utils) {
+    /* The loader (1.3.239) looks the device of a named object up in its list of instances, to which
+       other threads may add theirs, without a lock. Validation locks around both (layers.h). */
+    if (device->debug_utils && device->validation)
         device->set_object_name = (PFN_vkSetDebugUtilsObjectNameEXT)vkGetDeviceProcAddr(
             device->vk, "vkSetDebugUtilsObjectNameEXT");
+    if (device->debug_utils) {
         device->begin_label = (PFN_vkCmdBeginDebugUtilsLabelEXT)vkGetDeviceProcAddr(
             device->vk, "vkCmdBeginDebugUtilsLabelEXT");
         device->end_label = (PFN_vkCmdEndDebugUtilsLabelEXT)vkGetDeviceProcAddr(

@@ -63,8 +63,8 @@ struct device {
     VkPipelineCache cache;
     uint64_t cache_hash; /* of the cache file's contents; 0: no usable file */
 
-    PFN_vkSetDebugUtilsObjectNameEXT set_object_name; /* these three are NULL without debug_utils */
-    PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;
+    PFN_vkSetDebugUtilsObjectNameEXT set_object_name; /* NULL without validation */
+    PFN_vkCmdBeginDebugUtilsLabelEXT begin_label;     /* both NULL without debug_utils */
     PFN_vkCmdEndDebugUtilsLabelEXT end_label;
     /* Both NULL without VK_KHR_pipeline_executable_properties. */
     PFN_vkGetPipelineExecutablePropertiesKHR get_executables;
