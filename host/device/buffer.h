@@ -18,14 +18,14 @@ enum buffer_use {
    is copied and becomes the debug name. */
 WHIT_CHECK whit_result buffer_create(struct device *device, uint64_t size_bytes, uint32_t uses,
                                      const char *name, struct buffer **out);
-/* Creates those of the buffers that do not exist yet, up to the first error, and adds the sizes of
-   all that exist then to *bytes. A buffer of 0 bytes is not needed, and left out. */
 struct buffer_request {
     struct buffer **buffer;
-    uint64_t size_bytes;
+    uint64_t size_bytes; /* 0: the buffer is not needed, and left out */
     uint32_t uses;
     const char *name;
 };
+/* Creates those of the buffers that do not exist yet, up to the first error, and adds the sizes of
+   all that exist then to *bytes. */
 WHIT_CHECK whit_result buffer_create_all(struct device *device, const struct buffer_request *all,
                                          size_t count, uint64_t *bytes);
 void buffer_destroy(struct buffer *buffer); /* NULL is fine; not while in flight */

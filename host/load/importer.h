@@ -13,7 +13,7 @@ enum import_kind {
     IMPORT_GLTF,
     IMPORT_PLY,
     IMPORT_STL,
-    IMPORT_FBX,
+    IMPORT_FBX, /* this and those below come back as a whole GLB, the others as parts */
     IMPORT_DAE,
     IMPORT_3MF,
     IMPORT_OFF

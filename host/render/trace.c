@@ -78,7 +78,7 @@ static whit_result prepare(struct renderer *renderer, bool any, bool beams)
         {&trace->costs, renderer->params.count ? rays * sizeof(struct gpu_cost) : 0,
          BUFFER_STORAGE | BUFFER_HOST, "trace costs"},
         {&trace->deferred, lists ? sizeof(struct gpu_work) + rays * 4 : 0,
-         BUFFER_STORAGE | BUFFER_INDIRECT, "waiting rays"},
+         BUFFER_STORAGE | BUFFER_INDIRECT, "deferred rays"},
     };
     result = buffer_create_all(renderer->device, all, sizeof all / sizeof *all, &bytes);
     if (result == WHIT_OK)

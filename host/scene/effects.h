@@ -6,10 +6,10 @@
 
 const char *scene_effect_name(enum scene_effect effect);
 void scene_effects_scan(const struct scene *scene, struct scene_effects *out);
-/* Marks the materials that primitives use, by WORN_BY_* bits; free() it. Effects of unused ones, as
-   in material libraries, are not compiled. NULL when memory runs out; here all count as used
-   then. */
 enum { WORN_BY_TRIANGLES = 1, WORN_BY_SPHERES = 2 };
+/* By material: WORN_BY_* bits of the primitives that have it; free() it. NULL: out of memory, where
+   the functions below count all materials as used. Effects of unused ones, as in material
+   libraries, are not compiled. */
 uint8_t *scene_worn_materials(const struct scene *scene);
 /* The first material of this name that some primitive uses; name "": the first used one of any
    name. SCENE_NONE: there is none. */

@@ -1,8 +1,9 @@
 #include "settings/values.h"
-#include "base/text.h"
 
 #include <stdio.h>
 #include <string.h>
+
+#include "base/text.h"
 
 const struct setting_value values_build[] = {
     {"binned", WHIT_BUILD_BINNED, NULL},   {"sweep", WHIT_BUILD_SWEEP, NULL},
