@@ -130,13 +130,18 @@ if part 1 2; then
         od -An -v -t f4 -w32 "$1"
     }
     check "camera rays, one a pixel" test "$(floats "$K/t316-camera.rays" | wc -l)" -eq $((128 * 72))
-    # Rays 0 to 3 are neighbours in x, ray 4 is below ray 0, and ray 64 is 8 to its right.
+    # Rays 0 to 3 are neighbours in x, ray 4 is below ray 0, and ray 64 is 8 to its right. Directions of length 1 are
+    # scaled to the picture's plane: the sum of all of them is perpendicular to it.
     check "in tiles of 8x8" sh -c "od -An -v -t f4 -w32 '$K/t316-camera.rays' | awk '
-        { for (i = 0; i < 3; i++) d[NR - 1, i] = \$(5 + i) }
-        function near(n, a, times,    i, worst) {
+        { for (i = 0; i < 3; i++) { d[NR - 1, i] = \$(5 + i); ahead[i] += \$(5 + i) } }
+        function place(n, i,    along, k) {
+            for (k = 0; k < 3; k++) along += d[n, k] * ahead[k]
+            return d[n, i] * NR / along
+        }
+        function near(n, a, times,    i, worst, gap) {
             worst = 0
             for (i = 0; i < 3; i++) {
-                gap = d[n, i] - d[0, i] - times * (d[a, i] - d[0, i])
+                gap = place(n, i) - place(0, i) - times * (place(a, i) - place(0, i))
                 worst = gap * gap > worst ? gap * gap : worst
             }
             return worst < 1e-10
