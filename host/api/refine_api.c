@@ -8,7 +8,7 @@
 #include "image/estimate.h"
 #include "shader/program.h"
 
-/* What a number of samples give. */
+/* The picture of some of the samples, as means over them, and what drawing it took. */
 struct part {
     struct image color;
     struct image cuts;                  /* WHIT_AOV_CUTS */

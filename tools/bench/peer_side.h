@@ -4,9 +4,10 @@
 
        rays FILE closest|any     `rays COUNT`: loads the rays that the next lines trace
        trace WAY forth|back coherent|scattered
-                                 `time CPU_MS WALL_MS`, of all threads; `none`: cannot trace in this
-                                 way. back: traces from the end of each ray, which must have one, to
-                                 its origin. coherent: neighbouring rays are coherent
+                                 `time CPU_MS MS`: processor time of all threads; the wall clock's,
+                                 or for a GPU its own time. `none`: the peer cannot trace in this
+                                 way. back: from the end of each ray, which must have one, to its
+                                 origin. coherent: neighbouring rays are coherent
        build QUALITY THREADS     `built WALL_MS BYTES`: builds a tree of medium or high quality;
                                  BYTES: peak memory by the peer's own monitor
        hits FILE                 `hits COUNT`: writes the hits of the last trace. Only t, primitive
@@ -36,7 +37,9 @@ struct peer_side {
 
 /* Prints an error, and ends the program. */
 _Noreturn void peer_fail(const struct peer_side *side, const char *format, ...) WHIT_PRINTF(2, 3);
+/* Memory that starts as zeros; at least one record. Ends the program where there is none. */
 void *peer_alloc(const struct peer_side *side, uint64_t count, size_t record);
+/* Sets triangles and triangle_count; an error for a file without whole records, or without any. */
 void peer_read_triangles(struct peer_side *side, const char *path);
 /* Keeps hit i of the last trace: a triangle, or WHIT_NONE for a miss. */
 void peer_keep_hit(const struct peer_side *side, uint64_t i, float t, uint32_t triangle);

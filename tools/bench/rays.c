@@ -162,8 +162,8 @@ static whit_result begin_peer(struct model *model, enum peer_kind kind, const ch
         return WHIT_OK;
     whit_result result = peer_begin(peer, kind, model->bench, model->loaded.scene, triangles);
     model->has_peer[kind] = result == WHIT_OK && !peer->why_not[0];
-    if (result != WHIT_OK ||
-        model->table->row_count > 1) /* rows of a model before, below the head */
+    bool is_first = model->table->row_count == 1; /* only the head is there */
+    if (result != WHIT_OK || !is_first)
         return result;
     if (peer->why_not[0])
         table_leave_out(model->table, peer_names[kind], peer->why_not);
