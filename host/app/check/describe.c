@@ -48,7 +48,7 @@ void drawing_color_at(const struct drawing *drawing, size_t pixel, double rgb[3]
     get_color(whit_image_floats(drawing->color) + pixel * info.channels, info.channels, rgb);
 }
 
-size_t drawing_find_colors(const struct drawing *drawing, int pick, double rgb[3])
+size_t drawing_find_color(const struct drawing *drawing, enum color_of which, double rgb[3])
 {
     whit_image_info info;
     whit_image_get_info(drawing->color, &info);
@@ -61,13 +61,13 @@ size_t drawing_find_colors(const struct drawing *drawing, int pick, double rgb[3
         if (!isfinite(color[0]) || !isfinite(color[1]) || !isfinite(color[2]))
             continue;
         for (int k = 0; k < 3; ++k)
-            rgb[k] = pick == 0   ? rgb[k] + color[k]
-                     : used == 0 ? color[k]
-                     : pick < 0  ? fmin(rgb[k], color[k])
-                                 : fmax(rgb[k], color[k]);
+            rgb[k] = which == COLOR_MEAN  ? rgb[k] + color[k]
+                     : used == 0          ? color[k]
+                     : which == COLOR_MIN ? fmin(rgb[k], color[k])
+                                          : fmax(rgb[k], color[k]);
         ++used;
     }
-    for (int k = 0; k < 3 && pick == 0 && used; ++k)
+    for (int k = 0; k < 3 && which == COLOR_MEAN && used; ++k)
         rgb[k] /= (double)used;
     return used;
 }
@@ -136,7 +136,7 @@ static bool fill(const struct drawing *drawing, const struct check_case *item, s
                               .height = info.height,
                               .made_by = string_copy(item->made_by)};
     memcpy(one.rays, rays, sizeof rays);
-    drawing_find_colors(drawing, 0, one.mean);
+    drawing_find_color(drawing, COLOR_MEAN, one.mean);
     bool put = one.name && one.made_by && golden_put(found, &one);
     golden_case_finish(&one);
     return put && put_scene_parts(found, item, drawing->job.scene) &&

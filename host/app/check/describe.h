@@ -11,10 +11,9 @@ uint64_t drawing_hash_ids(const whit_image *image);
 
 /* The linear colour of a pixel; a single channel is repeated three times. */
 void drawing_color_at(const struct drawing *drawing, size_t pixel, double rgb[3]);
-/* Finds the mean colour of the pixels that are finite; `pick` below 0: the smallest of each
-   channel, above 0: the largest. It is black where no pixel is finite. Returns the number of these
-   pixels. */
-size_t drawing_find_colors(const struct drawing *drawing, int pick, double rgb[3]);
+/* Finds one linear colour of all pixels that are finite; black where there are none. Returns the
+   number of these pixels. */
+size_t drawing_find_color(const struct drawing *drawing, enum color_of which, double rgb[3]);
 /* The number of pixels whose camera ray hits something. */
 size_t drawing_count_hits(const struct drawing *drawing);
 

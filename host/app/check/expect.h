@@ -53,6 +53,9 @@ struct expect_value {
     const char *word; /* NULL: none */
 };
 
+/* One colour of many pixels, channel by channel. */
+enum color_of { COLOR_MEAN, COLOR_MIN, COLOR_MAX };
+
 struct expect_field {
     const char *name;
     enum expect_kind kind;
@@ -61,8 +64,8 @@ struct expect_field {
        no such value. */
     whit_result (*read)(const struct drawing *drawing, const struct check_expectation *one,
                         struct expect_value *value);
-    int pick;    /* of colours: below 0 the smallest, 0 the mean, above 0 the largest */
-    size_t stat; /* of counts: the offset of a uint64_t in whit_stats */
+    enum color_of color; /* of EXPECT_COLOR without a pixel */
+    size_t stat;         /* of counts of rays: the offset of a uint64_t in whit_stats */
 };
 extern const struct expect_field expect_fields[]; /* ends with one without a name */
 

@@ -20,14 +20,14 @@ static whit_result read_nonfinite(drawing_t *drawing, expectation_t *one,
     whit_image_info info;
     (void)one;
     whit_image_get_info(drawing->color, &info);
-    size_t finite = drawing_find_colors(drawing, 0, mean);
+    size_t finite = drawing_find_color(drawing, COLOR_MEAN, mean);
     value->numbers[0] = (double)((size_t)info.width * info.height - finite);
     return WHIT_OK;
 }
 
 static whit_result read_colors(drawing_t *drawing, expectation_t *one, struct expect_value *value)
 {
-    drawing_find_colors(drawing, expect_fields[one->field].pick, value->numbers);
+    drawing_find_color(drawing, expect_fields[one->field].color, value->numbers);
     return WHIT_OK;
 }
 
@@ -169,9 +169,9 @@ const struct expect_field expect_fields[] = {
     {"rays.cut_by_bailout", EXPECT_NUMBER, .read = read_count,
      .stat = offsetof(whit_stats, rays_cut_bailout)},
     {"max_stack", EXPECT_NUMBER, .counts = true, .read = read_max_stack},
-    {"mean", EXPECT_COLOR, .read = read_colors, .pick = 0},
-    {"min", EXPECT_COLOR, .read = read_colors, .pick = -1},
-    {"max", EXPECT_COLOR, .read = read_colors, .pick = 1},
+    {"mean", EXPECT_COLOR, .read = read_colors, .color = COLOR_MEAN},
+    {"min", EXPECT_COLOR, .read = read_colors, .color = COLOR_MIN},
+    {"max", EXPECT_COLOR, .read = read_colors, .color = COLOR_MAX},
     {"pixel", EXPECT_COLOR, .of_pixel = true, .read = read_pixel},
     {"pixel.instance", EXPECT_NAME, .of_pixel = true, .read = read_instance},
     {"pixel.primitive", EXPECT_NUMBER, .of_pixel = true, .read = read_primitive},
