@@ -18,30 +18,41 @@ bool readback_is_late(const struct renderer *renderer)
            renderer->params.sampling.kind == WHIT_SAMPLING_FIXED;
 }
 
-static whit_result read_pixels(const struct renderer *renderer, uint32_t rows, float *pixels)
+/* The planes of a picture: where the device has the values of a band and where the renderer keeps
+   those of the whole picture. Each value has 32 bits. */
+enum plane_name { PLANE_COLOR, PLANE_IDS, PLANE_CUTS, PLANE_DISTANCES, PLANES };
+
+struct plane {
+    struct buffer *buffer; /* NULL: without secondary rays nothing is cut, so weights are zeros */
+    struct image *kept;    /* without contents: the plane is not kept */
+    uint32_t channels;
+};
+
+static struct plane plane_of(struct renderer *renderer, enum plane_name name)
 {
-    return buffer_read(renderer->picture.buffers.pixels, 0, pixels,
-                       (uint64_t)renderer->params.width * rows * 4 * sizeof *pixels);
+    const struct pixel_buffers *p = &renderer->picture.buffers;
+    switch (name) {
+    case PLANE_IDS:
+        return (struct plane){p->ids, &renderer->ids, 2};
+    case PLANE_CUTS:
+        return (struct plane){p->queues.cut_sums, &renderer->cuts, 2};
+    case PLANE_DISTANCES:
+        return (struct plane){p->distances, &renderer->distances, 1};
+    default:
+        return (struct plane){p->pixels, &renderer->color, 4};
+    }
 }
 
-static whit_result read_ids(const struct renderer *renderer, uint32_t rows, uint32_t *words)
+static uint32_t *words_of(const struct image *image)
 {
-    return buffer_read(renderer->picture.buffers.ids, 0, words,
-                       (uint64_t)renderer->params.width * rows * 2 * sizeof *words);
+    return image->words ? image->words : (uint32_t *)image->pixels;
 }
 
-/* Without secondary rays nothing is cut, and there is no buffer to read. */
-static whit_result read_cuts(const struct renderer *renderer, uint32_t rows, float *weights)
+/* Reads `count` pixels of the band. */
+static whit_result read_plane(const struct plane *plane, size_t count, uint32_t *words)
 {
-    struct buffer *sums = renderer->picture.buffers.queues.cut_sums;
-    uint64_t bytes = (uint64_t)renderer->params.width * rows * 2 * sizeof *weights;
-    return sums ? buffer_read(sums, 0, weights, bytes) : WHIT_OK;
-}
-
-static whit_result read_distances(const struct renderer *renderer, uint32_t rows, float *distances)
-{
-    return buffer_read(renderer->picture.buffers.distances, 0, distances,
-                       (uint64_t)renderer->params.width * rows * sizeof *distances);
+    uint64_t bytes = (uint64_t)count * plane->channels * sizeof *words;
+    return plane->buffer ? buffer_read(plane->buffer, 0, words, bytes) : WHIT_OK;
 }
 
 /* Reads all aovs of `count` pixels of the band, from its pixel `at` on. */
@@ -136,13 +147,12 @@ whit_result readback_band(struct renderer *renderer, const struct progress *prog
         if (result == WHIT_OK)
             result = read_listed_aovs(renderer, progress, band_y, rows);
     } else if (!readback_is_late(renderer)) {
-        result = read_pixels(renderer, rows, &renderer->color.pixels[4 * first]);
-        if (result == WHIT_OK && renderer->ids.words)
-            result = read_ids(renderer, rows, &renderer->ids.words[2 * first]);
-        if (result == WHIT_OK && renderer->cuts.pixels)
-            result = read_cuts(renderer, rows, &renderer->cuts.pixels[2 * first]);
-        if (result == WHIT_OK && renderer->distances.pixels)
-            result = read_distances(renderer, rows, &renderer->distances.pixels[first]);
+        for (int i = 0; result == WHIT_OK && i < PLANES; ++i) {
+            struct plane plane = plane_of(renderer, (enum plane_name)i);
+            uint32_t *kept = words_of(plane.kept);
+            if (kept)
+                result = read_plane(&plane, count, kept + first * plane.channels);
+        }
         if (result == WHIT_OK && renderer->aovs.pixels)
             result =
                 read_aovs(renderer, 0, count,
@@ -166,24 +176,30 @@ static void close_gaps(const struct renderer *renderer, struct image *image)
 {
     size_t words = (size_t)image->width * image->channels, height = renderer->params.height;
     size_t stride = views_stride(renderer);
-    uint32_t *all = image->words ? image->words : (uint32_t *)image->pixels;
+    uint32_t *all = words_of(image);
     for (size_t i = 1; height != stride && i < renderer->views.count; ++i)
         memmove(all + words * height * i, all + words * stride * i, words * height * sizeof *all);
     image->height = views_image_rows(renderer);
 }
 
-whit_result renderer_read_color(struct renderer *renderer, struct image *out)
+static whit_result read_whole(struct renderer *renderer, enum plane_name name, struct image *out)
 {
-    whit_result result = begin_read(renderer, 4, false, out);
+    const struct plane plane = plane_of(renderer, name);
+    whit_result result = begin_read(renderer, plane.channels, name == PLANE_IDS, out);
     if (result != WHIT_OK)
         return result;
+    size_t count = (size_t)out->width * out->height;
     if (readback_is_late(renderer))
-        result = read_pixels(renderer, out->height, out->pixels);
+        result = read_plane(&plane, count, words_of(out));
     else
-        memcpy(out->pixels, renderer->color.pixels,
-               (size_t)out->width * out->height * 4 * sizeof(float));
+        memcpy(words_of(out), words_of(plane.kept), count * plane.channels * sizeof(uint32_t));
     close_gaps(renderer, out);
     return result;
+}
+
+whit_result renderer_read_color(struct renderer *renderer, struct image *out)
+{
+    return read_whole(renderer, PLANE_COLOR, out);
 }
 
 whit_result renderer_borrow_color(struct renderer *renderer, struct image *out)
@@ -207,41 +223,22 @@ whit_result renderer_read_distances(struct renderer *renderer, struct image *out
         log_error(&renderer->log, "distances are kept of views that are drawn together");
         return WHIT_ERROR_USAGE;
     }
-    whit_result result = begin_read(renderer, 1, false, out);
-    if (result != WHIT_OK)
-        return result;
-    if (readback_is_late(renderer))
-        result = read_distances(renderer, out->height, out->pixels);
-    else
-        memcpy(out->pixels, renderer->distances.pixels,
-               (size_t)out->width * out->height * sizeof(float));
-    close_gaps(renderer, out);
-    return result;
+    return read_whole(renderer, PLANE_DISTANCES, out);
 }
 
-/* As begin_read, for what renderers with params.color_only do not keep. */
-static whit_result begin_read_data(const struct renderer *renderer, bool integers,
-                                   struct image *out)
+/* As read_whole, for what renderers with params.color_only do not keep. */
+static whit_result read_data(struct renderer *renderer, enum plane_name name, struct image *out)
 {
     if (!pixels_have_data(&renderer->picture)) {
         log_error(&renderer->log, "the renderer keeps colours alone (color_only)");
         return WHIT_ERROR_USAGE;
     }
-    return begin_read(renderer, 2, integers, out);
+    return read_whole(renderer, name, out);
 }
 
 whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
 {
-    whit_result result = begin_read_data(renderer, true, out);
-    if (result != WHIT_OK)
-        return result;
-    if (readback_is_late(renderer))
-        result = read_ids(renderer, out->height, out->words);
-    else
-        memcpy(out->words, renderer->ids.words,
-               (size_t)out->width * out->height * 2 * sizeof(uint32_t));
-    close_gaps(renderer, out);
-    return result;
+    return read_data(renderer, PLANE_IDS, out);
 }
 
 /* Copies aov `index` out of a row that has all of them. */
@@ -293,16 +290,7 @@ whit_result renderer_read_cuts(struct renderer *renderer, struct image *out)
         log_error(&renderer->log, "weights that were cut are not kept with adaptive samples");
         return WHIT_ERROR_USAGE;
     }
-    whit_result result = begin_read_data(renderer, false, out);
-    if (result != WHIT_OK)
-        return result;
-    if (readback_is_late(renderer))
-        result = read_cuts(renderer, out->height, out->pixels);
-    else
-        memcpy(out->pixels, renderer->cuts.pixels,
-               (size_t)out->width * out->height * 2 * sizeof(float));
-    close_gaps(renderer, out);
-    return result;
+    return read_data(renderer, PLANE_CUTS, out);
 }
 
 whit_result renderer_camera_rays(const struct renderer *renderer, uint32_t max,
