@@ -1,4 +1,4 @@
-#include "device/commands.h"
+#include "device/commands_private.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -7,7 +7,6 @@
 
 #include "base/array.h"
 #include "device/buffer.h"
-#include "device/vulkan.h"
 
 enum commands_state { COMMANDS_IDLE, COMMANDS_RECORDING, COMMANDS_IN_FLIGHT };
 
@@ -319,7 +318,12 @@ void commands_span_end(struct commands *commands)
     commands->span_open = false;
 }
 
-whit_result commands_submit(struct commands *commands)
+VkCommandBuffer commands_vk(const struct commands *commands)
+{
+    return commands->vk;
+}
+
+whit_result commands_submit_between(struct commands *commands, VkSemaphore wait, VkSemaphore signal)
 {
     struct device *device = commands->device;
     whit_result result = WHIT_OK;
@@ -339,15 +343,26 @@ whit_result commands_submit(struct commands *commands)
     commands->state = COMMANDS_IDLE;
     VK_TRY(device, vkEndCommandBuffer(commands->vk));
     VK_TRY(device, vkResetFences(device->vk, 1, &commands->fence));
+    const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
     VkSubmitInfo info = {
         .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+        .waitSemaphoreCount = wait ? 1 : 0,
+        .pWaitSemaphores = &wait,
+        .pWaitDstStageMask = &stage,
         .commandBufferCount = 1,
         .pCommandBuffers = &commands->vk,
+        .signalSemaphoreCount = signal ? 1 : 0,
+        .pSignalSemaphores = &signal,
     };
     VK_TRY(device, vkQueueSubmit(device->queue, 1, &info, commands->fence));
     commands->state = COMMANDS_IN_FLIGHT;
 fail:
     return result;
+}
+
+whit_result commands_submit(struct commands *commands)
+{
+    return commands_submit_between(commands, VK_NULL_HANDLE, VK_NULL_HANDLE);
 }
 
 static whit_result read_spans(struct commands *commands)

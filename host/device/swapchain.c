@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "device/buffer.h"
+#include "device/commands.h"
 #include "device/swapchain_show.h"
 
 static const struct known_format {
@@ -96,40 +97,6 @@ fail:
     return result;
 }
 
-static whit_result make_commands(struct swapchain *swapchain)
-{
-    struct device *device = swapchain->device;
-    whit_result result = WHIT_OK;
-    VkCommandPoolCreateInfo pool = {
-        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-        .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-        .queueFamilyIndex = device->queue_family,
-    };
-    VkCommandBufferAllocateInfo buffer = {
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-        .commandBufferCount = 1,
-    };
-    VkFenceCreateInfo fence = {.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    VkQueryPoolCreateInfo queries = {
-        .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-        .queryType = VK_QUERY_TYPE_TIMESTAMP,
-        .queryCount = 2,
-    };
-    VK_TRY(device, vkCreateCommandPool(device->vk, &pool, NULL, &swapchain->pool));
-    buffer.commandPool = swapchain->pool;
-    VK_TRY(device, vkAllocateCommandBuffers(device->vk, &buffer, &swapchain->commands));
-    VK_TRY(device, vkCreateFence(device->vk, &fence, NULL, &swapchain->fence));
-    if (device->timestamp_mask != 0)
-        VK_TRY(device, vkCreateQueryPool(device->vk, &queries, NULL, &swapchain->queries));
-    device_name_object(device, VK_OBJECT_TYPE_COMMAND_BUFFER, (uint64_t)swapchain->commands,
-                       "window");
-    device_name_object(device, VK_OBJECT_TYPE_FENCE, (uint64_t)swapchain->fence, "window");
-    result = make_semaphore(device, "image acquired", &swapchain->acquired);
-fail:
-    return result;
-}
-
 whit_result swapchain_create(struct device *device, const struct swapchain_params *params,
                              struct swapchain **out)
 {
@@ -144,7 +111,9 @@ whit_result swapchain_create(struct device *device, const struct swapchain_param
     swapchain->info.draw_ms = -1.0;
     whit_result result = choose_format(swapchain);
     if (result == WHIT_OK)
-        result = make_commands(swapchain);
+        result = commands_create(device, "window", &swapchain->commands);
+    if (result == WHIT_OK)
+        result = make_semaphore(device, "image acquired", &swapchain->acquired);
     if (result == WHIT_OK)
         result = make_pass(swapchain);
     if (result != WHIT_OK) {
@@ -182,9 +151,7 @@ void swapchain_destroy(struct swapchain *swapchain)
     vkDestroySwapchainKHR(vk, swapchain->vk, NULL);
     vkDestroyRenderPass(vk, swapchain->pass, NULL);
     vkDestroySemaphore(vk, swapchain->acquired, NULL);
-    vkDestroyQueryPool(vk, swapchain->queries, NULL);
-    vkDestroyFence(vk, swapchain->fence, NULL);
-    vkDestroyCommandPool(vk, swapchain->pool, NULL);
+    commands_destroy(swapchain->commands);
     free(swapchain);
 }
 

@@ -17,18 +17,15 @@ struct window_image {
 struct swapchain {
     struct device *device;
     bool swaps; /* blue is the format's first byte */
-    bool vsync, captures, captured, in_flight, stale;
+    bool vsync, captures, captured, stale;
     VkSurfaceFormatKHR format;
     VkExtent2D extent; /* 0 x 0: no images */
     VkSwapchainKHR vk;
     uint32_t image_count;
     struct window_image images[IMAGES_MAX];
 
-    VkCommandPool pool;
-    VkCommandBuffer commands;
-    VkFence fence;
+    struct commands *commands;
     VkSemaphore acquired;
-    VkQueryPool queries; /* null without timestamps */
     VkRenderPass pass;
 
     struct buffer *picture; /* of the window's size, in host memory, in the order of `format` */

@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "base/clock.h"
 #include "device/buffer.h"
+#include "device/commands_private.h"
 #include "device/stretch.h"
 
 enum { COPY_PIXELS = 4096 }; /* reordered at a time */
@@ -16,12 +17,9 @@ static const VkClearColorValue DARK = {{0.06f, 0.08f, 0.10f, 1.0f}};
 
 whit_result swapchain_wait(struct swapchain *swapchain)
 {
-    struct device *device = swapchain->device;
-    whit_result result = WHIT_OK;
-    if (swapchain->in_flight)
-        VK_TRY(device, vkWaitForFences(device->vk, 1, &swapchain->fence, VK_TRUE, UINT64_MAX));
-    swapchain->in_flight = false;
-fail:
+    whit_result result = commands_wait(swapchain->commands, -1.0);
+    if (commands_span_count(swapchain->commands) > 0)
+        swapchain->info.draw_ms = commands_span_ms(swapchain->commands, 0);
     return result;
 }
 
@@ -117,7 +115,7 @@ static void change_layout(const struct swapchain *swapchain, VkImage image, VkIm
         .image = image,
         .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
     };
-    vkCmdPipelineBarrier(swapchain->commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+    vkCmdPipelineBarrier(commands_vk(swapchain->commands), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
 
@@ -132,10 +130,10 @@ static void record_picture(const struct swapchain *swapchain, VkImage image)
     const VkImageSubresourceRange all = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     change_layout(swapchain, image, VK_IMAGE_LAYOUT_UNDEFINED, layout);
     if (swapchain->has_picture)
-        vkCmdCopyBufferToImage(swapchain->commands, swapchain->picture->vk, image, layout, 1,
-                               &copy);
+        vkCmdCopyBufferToImage(commands_vk(swapchain->commands), swapchain->picture->vk, image,
+                               layout, 1, &copy);
     else
-        vkCmdClearColorImage(swapchain->commands, image, layout, &DARK, 1, &all);
+        vkCmdClearColorImage(commands_vk(swapchain->commands), image, layout, &DARK, 1, &all);
     change_layout(swapchain, image, layout, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
 }
 
@@ -148,10 +146,10 @@ static void record_overlay(struct swapchain *swapchain, const struct window_imag
         .framebuffer = image->framebuffer,
         .renderArea = {{0, 0}, swapchain->extent},
     };
-    vkCmdBeginRenderPass(swapchain->commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    vkCmdBeginRenderPass(commands_vk(swapchain->commands), &begin, VK_SUBPASS_CONTENTS_INLINE);
     if (draw)
-        draw(user, swapchain->commands);
-    vkCmdEndRenderPass(swapchain->commands);
+        draw(user, commands_vk(swapchain->commands));
+    vkCmdEndRenderPass(commands_vk(swapchain->commands));
 }
 
 /* Expects the image in layout COLOR_ATTACHMENT_OPTIMAL, and leaves it in *layout. */
@@ -174,76 +172,27 @@ static whit_result record_capture(struct swapchain *swapchain, const struct wind
     VkBufferImageCopy copy = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                               .imageExtent = {extent.width, extent.height, 1}};
     change_layout(swapchain, image->image, *layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    vkCmdCopyImageToBuffer(swapchain->commands, image->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                           swapchain->capture->vk, 1, &copy);
+    vkCmdCopyImageToBuffer(commands_vk(swapchain->commands), image->image,
+                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, swapchain->capture->vk, 1, &copy);
     *layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     return WHIT_OK;
-}
-
-static void stamp(struct swapchain *swapchain, uint32_t query)
-{
-    if (swapchain->queries)
-        vkCmdWriteTimestamp(swapchain->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT,
-                            swapchain->queries, query);
-}
-
-static whit_result begin_commands(struct swapchain *swapchain)
-{
-    struct device *device = swapchain->device;
-    whit_result result = WHIT_OK;
-    VkCommandBufferBeginInfo info = {
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
-    };
-    VK_TRY(device, vkResetCommandPool(device->vk, swapchain->pool, 0));
-    VK_TRY(device, vkBeginCommandBuffer(swapchain->commands, &info));
-fail:
-    return result;
 }
 
 static whit_result record(struct swapchain *swapchain, uint32_t index, swapchain_draw draw,
                           void *user, bool capture)
 {
-    struct device *device = swapchain->device;
     const struct window_image *image = &swapchain->images[index];
     VkImageLayout layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-    whit_result result = begin_commands(swapchain);
+    whit_result result = commands_begin(swapchain->commands);
     if (result != WHIT_OK)
         return result;
-    if (swapchain->queries)
-        vkCmdResetQueryPool(swapchain->commands, swapchain->queries, 0, 2);
-    stamp(swapchain, 0);
+    commands_span_begin(swapchain->commands, "show");
     record_picture(swapchain, image->image);
     record_overlay(swapchain, image, draw, user);
     if (capture)
         result = record_capture(swapchain, image, &layout);
     change_layout(swapchain, image->image, layout, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);
-    stamp(swapchain, 1);
-    if (result == WHIT_OK)
-        VK_TRY(device, vkEndCommandBuffer(swapchain->commands));
-fail:
-    return result;
-}
-
-static whit_result submit(struct swapchain *swapchain, VkSemaphore wait, VkSemaphore signal)
-{
-    struct device *device = swapchain->device;
-    whit_result result = WHIT_OK;
-    const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
-    VkSubmitInfo info = {
-        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-        .waitSemaphoreCount = wait ? 1 : 0,
-        .pWaitSemaphores = &wait,
-        .pWaitDstStageMask = &stage,
-        .commandBufferCount = 1,
-        .pCommandBuffers = &swapchain->commands,
-        .signalSemaphoreCount = signal ? 1 : 0,
-        .pSignalSemaphores = &signal,
-    };
-    VK_TRY(device, vkResetFences(device->vk, 1, &swapchain->fence));
-    VK_TRY(device, vkQueueSubmit(device->queue, 1, &info, swapchain->fence));
-    swapchain->in_flight = true;
-fail:
+    commands_span_end(swapchain->commands);
     return result;
 }
 
@@ -296,20 +245,6 @@ static whit_result present(struct swapchain *swapchain, uint32_t index, bool *sh
     return window_result(swapchain, vk, "vkQueuePresentKHR", shown);
 }
 
-static void read_time(struct swapchain *swapchain)
-{
-    const struct device *device = swapchain->device;
-    uint64_t stamps[2] = {0};
-    swapchain->info.draw_ms = -1.0;
-    if (!swapchain->queries ||
-        vkGetQueryPoolResults(device->vk, swapchain->queries, 0, 2, sizeof stamps, stamps,
-                              sizeof *stamps, VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
-        return;
-    uint64_t ticks = (stamps[1] - stamps[0]) & device->timestamp_mask;
-    swapchain->info.draw_ms =
-        (double)ticks * (double)device->properties.limits.timestampPeriod * 1e-6;
-}
-
 static whit_result show(struct swapchain *swapchain, swapchain_draw draw, void *user, bool capture,
                         bool *shown)
 {
@@ -317,12 +252,9 @@ static whit_result show(struct swapchain *swapchain, swapchain_draw draw, void *
     bool usable = false;
     uint32_t index = 0;
     *shown = false;
-    bool had_one = swapchain->in_flight;
     whit_result result = swapchain_wait(swapchain);
     if (result != WHIT_OK || swapchain->extent.width == 0)
         return result;
-    if (had_one)
-        read_time(swapchain);
     if (swapchain->stale)
         return WHIT_OK; /* nothing is shown until the caller has called swapchain_resize */
     result = acquire(swapchain, &index, &usable);
@@ -331,7 +263,8 @@ static whit_result show(struct swapchain *swapchain, swapchain_draw draw, void *
         return result;
     result = record(swapchain, index, draw, user, capture);
     if (result == WHIT_OK)
-        result = submit(swapchain, swapchain->acquired, swapchain->images[index].drawn);
+        result = commands_submit_between(swapchain->commands, swapchain->acquired,
+                                         swapchain->images[index].drawn);
     return result == WHIT_OK ? present(swapchain, index, shown) : result;
 }
 
@@ -373,17 +306,12 @@ whit_result swapchain_read(struct swapchain *swapchain, uint8_t *rgba, size_t by
 whit_result swapchain_submit(struct swapchain *swapchain, void (*fn)(void *user, void *commands),
                              void *user)
 {
-    struct device *device = swapchain->device;
     whit_result result = swapchain_wait(swapchain);
     if (result == WHIT_OK)
-        result = begin_commands(swapchain);
+        result = commands_begin(swapchain->commands);
     if (result != WHIT_OK)
         return result;
-    fn(user, swapchain->commands);
-    VK_TRY(device, vkEndCommandBuffer(swapchain->commands));
-    result = submit(swapchain, VK_NULL_HANDLE, VK_NULL_HANDLE);
-    if (result == WHIT_OK)
-        result = swapchain_wait(swapchain);
-fail:
-    return result;
+    fn(user, commands_vk(swapchain->commands));
+    result = commands_submit(swapchain->commands);
+    return result == WHIT_OK ? swapchain_wait(swapchain) : result;
 }
