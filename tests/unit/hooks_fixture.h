@@ -31,7 +31,7 @@ static inline void drop_shader(whit_shader **at)
 #define own_whit_shader __attribute__((cleanup(drop_shader))) whit_shader
 
 /* Loads functions from a temporary file with this text. */
-static inline whit_result hooks_load(const char *text, whit_shader **shader)
+static inline whit_result hooks_try(const char *text, whit_shader **shader)
 {
     char path[] = "/tmp/whit_hooks_XXXXXX";
     int file = mkstemp(path);
@@ -41,6 +41,15 @@ static inline whit_result hooks_load(const char *text, whit_shader **shader)
     whit_result result = whit_shader_load(compiler, path, false, shader);
     remove(path);
     return result;
+}
+
+/* Fails with what was logged. */
+static inline whit_shader *hooks_load(const char *text)
+{
+    whit_shader *shader = NULL;
+    if (hooks_try(text, &shader) != WHIT_OK)
+        fail_msg("%s\n%s", text, messages.last_error);
+    return shader;
 }
 
 /* The bit of an effect. */

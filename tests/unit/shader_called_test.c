@@ -11,13 +11,6 @@ static int begin(void **state)
     return 0;
 }
 
-static whit_shader *load(const char *content)
-{
-    whit_shader *shader = NULL;
-    assert_int_equal(hooks_load(content, &shader), WHIT_OK);
-    return shader;
-}
-
 /* The picture with effects added; *compiled: bits of its effects. */
 static whit_image *draw(const whit_shader *shader, uint64_t added, uint64_t *compiled,
                         uint32_t *kernels)
@@ -67,7 +60,7 @@ TEST(what_is_not_asked_for_is_not_compiled)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         uint64_t compiled, forced;
         uint32_t kernels, more;
-        own_whit_shader *shader = load(cases[i].content);
+        own_whit_shader *shader = hooks_load(cases[i].content);
         own_whit_image *usual = draw(shader, 0, &compiled, &kernels);
         if ((compiled & lights) != (cases[i].lights ? lights : 0) ||
             (compiled & shadows) != (cases[i].shadows ? shadows : 0) || kernels != cases[i].kernels)
@@ -124,10 +117,11 @@ static void is_as(whit_renderer *renderer, const whit_renderer_params *params,
    with more hits than there are rows. */
 TEST(a_kernel_in_parts_draws_the_same)
 {
-    own_whit_shader *first = load(TOLD "    return sum;\n}\n");
-    own_whit_shader *second = load(TOLD "    return sum * 0.5;\n}\n");
-    own_whit_shader *flat = load("vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ng + "
-                                 "visible(s, s.ns, 2.0); }\n");
+    own_whit_shader *first = hooks_load(TOLD "    return sum;\n}\n");
+    own_whit_shader *second = hooks_load(TOLD "    return sum * 0.5;\n}\n");
+    own_whit_shader *flat =
+        hooks_load("vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ng + "
+                   "visible(s, s.ns, 2.0); }\n");
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, first);
     params.step = no_step;
     params.keep_unread = params.few_pixels = true;
@@ -157,8 +151,8 @@ TEST(misses_know_their_ray)
     uint64_t compiled;
     uint32_t kernels, seen = 0, mirrored = 0;
     own_whit_shader *shader =
-        load("vec3 miss(vec3 dir)\n{\n    return vec3(bounces(), ray_distance() > "
-             "1e30, length(dir));\n}\n");
+        hooks_load("vec3 miss(vec3 dir)\n{\n    return vec3(bounces(), ray_distance() > "
+                   "1e30, length(dir));\n}\n");
     own_whit_image *image = draw(shader, 0, &compiled, &kernels);
     const float *color = whit_image_floats(image);
     for (uint32_t i = 0; i < PIXELS; ++i, color += 4) {
@@ -185,12 +179,12 @@ TEST(another_version_has_the_same_values_and_asks_for_the_same)
         {AOV("one") AOV("two") SHADE "s.ns; }\n", false},
         {SHADE "s.ns; }\n", false},
     };
-    own_whit_shader *shader = load(AOV("one") SHADE "s.ns; }\n");
+    own_whit_shader *shader = hooks_load(AOV("one") SHADE "s.ns; }\n");
     whit_renderer_params params = whit_renderer_defaults();
     params.shader = shader;
     own_whit_renderer *renderer = renderer_of(&params);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        own_whit_shader *other = load(cases[i].content);
+        own_whit_shader *other = hooks_load(cases[i].content);
         if (whit_renderer_takes_shader(renderer, other) != cases[i].taken)
             fail_msg("%s", cases[i].content);
     }
@@ -221,7 +215,7 @@ static void draw_versions(const char *const *versions, const bool *traces, size_
 {
     uint32_t calls = 0, kernels;
     uint64_t compiled;
-    whit_shader *before = load(versions[0]);
+    whit_shader *before = hooks_load(versions[0]);
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, before);
     whit_image *in_place;
     params.reuse_rays = true;
@@ -231,7 +225,7 @@ static void draw_versions(const char *const *versions, const bool *traces, size_
     assert_true(draw_in_place(renderer, &calls, &in_place));
     whit_image_destroy(in_place);
     for (size_t i = 1; i < count; ++i) {
-        whit_shader *shader = load(versions[i]);
+        whit_shader *shader = hooks_load(versions[i]);
         params.shader = shader;
         assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
         whit_shader_destroy(before);
@@ -291,7 +285,7 @@ TEST_BY_TURNS(another_post_beside_other_functions_needs_no_rays, 1, 2)
 TEST_BY_TURNS(rays_are_taken_again_for_the_same_view, 0, 2)
 {
     uint32_t calls = 0;
-    whit_shader *shader = load(POST("c.bgr"));
+    whit_shader *shader = hooks_load(POST("c.bgr"));
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     whit_image *first, *again;
     params.progress = count_call;
@@ -366,7 +360,7 @@ static bool traces_behind_cancelled(uint32_t samples, whit_shader *const shaders
    picture is still valid; sums of several samples are incomplete then. */
 TEST_BY_TURNS(another_post_behind_a_cancelled_picture_needs_no_rays, 1, 2)
 {
-    whit_shader *const shaders[2] = {load(POST("c")), load(POST("c.bgr"))};
+    whit_shader *const shaders[2] = {hooks_load(POST("c")), hooks_load(POST("c.bgr"))};
     whit_image *in_place, *alone;
     uint64_t compiled;
     uint32_t kernels;
@@ -385,7 +379,7 @@ TEST_BY_TURNS(another_post_behind_a_cancelled_picture_needs_no_rays, 1, 2)
    shader asks for none. */
 TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
 {
-    own_whit_shader *shader = load("//@ expect rays.shadow == base\n" SHADE "s.ns; }\n");
+    own_whit_shader *shader = hooks_load("//@ expect rays.shadow == base\n" SHADE "s.ns; }\n");
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     bool held;
     own_whit_renderer *renderer = renderer_of(&params);
@@ -398,7 +392,7 @@ TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
 static uint64_t traced_by_functions(const char *content, whit_numerics numerics, uint64_t *hits)
 {
     enum { ODD_WIDTH = 51, ODD_HEIGHT = 37 }; /* no multiples of a tile's sides */
-    own_whit_shader *shader = load(content);
+    own_whit_shader *shader = hooks_load(content);
     whit_renderer_params params = params_sized(ODD_WIDTH, ODD_HEIGHT, shader);
     whit_stats stats;
     params.depth = 0;

@@ -90,8 +90,7 @@ static void compare(const struct picture *shape, const struct picture *real)
 TEST(shape_is_seen_lit_mirrored_and_in_the_way_as_a_ball_is)
 {
     static struct picture shape, real;
-    own_whit_shader *shader = NULL;
-    assert_int_equal(hooks_load(SHAPE_TEXT, &shader), WHIT_OK);
+    own_whit_shader *shader = hooks_load(SHAPE_TEXT);
     static const whit_numerics levels[] = {WHIT_NUMERICS_WATERTIGHT, WHIT_NUMERICS_EXACT};
     for (size_t i = 0; i < sizeof levels / sizeof *levels; ++i) {
         assert_int_equal(draw("", shader, levels[i], &shape), WHIT_OK);
@@ -104,10 +103,9 @@ TEST(shape_is_seen_lit_mirrored_and_in_the_way_as_a_ball_is)
    is in front of it, and agree on all rays behind it. */
 TEST_BY_TURNS(probe_of_the_shape_differs_nowhere, 0, 2)
 {
-    own_whit_shader *shader = NULL;
+    own_whit_shader *shader = hooks_load(SHAPE_TEXT);
     whit_probe_report *report;
     open_room("");
-    assert_int_equal(hooks_load(SHAPE_TEXT, &shader), WHIT_OK);
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_probe(renderer, WIDTH / 2, HEIGHT / 2, 0, &report), WHIT_OK);
@@ -129,25 +127,20 @@ TEST_BY_TURNS(functions_that_trace_meet_the_shape, 1, 2)
         "}\n";
     static struct picture shape, real;
     char text[4096];
-    whit_shader *shader;
     snprintf(text, sizeof text, shade, "");
-    assert_int_equal(hooks_load(text, &shader), WHIT_OK);
-    assert_int_equal(draw("", shader, WHIT_NUMERICS_WATERTIGHT, &shape), WHIT_OK);
-    whit_shader_destroy(shader);
-    assert_int_equal(hooks_load(strstr(text, "vec3 shade"), &shader), WHIT_OK);
-    assert_int_equal(draw(real_ball, shader, WHIT_NUMERICS_WATERTIGHT, &real), WHIT_OK);
-    whit_shader_destroy(shader);
+    own_whit_shader *with_shape = hooks_load(text);
+    own_whit_shader *without = hooks_load(strstr(text, "vec3 shade"));
+    assert_int_equal(draw("", with_shape, WHIT_NUMERICS_WATERTIGHT, &shape), WHIT_OK);
+    assert_int_equal(draw(real_ball, without, WHIT_NUMERICS_WATERTIGHT, &real), WHIT_OK);
     compare(&shape, &real);
 }
 
 TEST_BY_TURNS(material_that_nothing_wears_has_a_nearest_one, 0, 2)
 {
-    own_whit_shader *shader = NULL;
-    assert_int_equal(hooks_load("//@ box -1 0 -1  1 1 1  0.01 gald\n"
-                                "bool intersect(vec3 origin, vec3 dir, float far, out float t, "
-                                "out vec3 normal)\n{ t = 0.0; normal = -dir; return false; }\n",
-                                &shader),
-                     WHIT_OK);
+    own_whit_shader *shader =
+        hooks_load("//@ box -1 0 -1  1 1 1  0.01 gald\n"
+                   "bool intersect(vec3 origin, vec3 dir, float far, out float t, "
+                   "out vec3 normal)\n{ t = 0.0; normal = -dir; return false; }\n");
     assert_int_equal(draw("", shader, WHIT_NUMERICS_WATERTIGHT, NULL), WHIT_OK);
     assert_non_null(strstr(messages.text, "wears a material `gald`; did you mean `gold`?"));
 }
@@ -157,7 +150,7 @@ static void expect_error(const char *content, whit_result wanted, const char *pa
 {
     own_whit_shader *shader = NULL;
     messages = (struct messages){0};
-    whit_result result = hooks_load(content, &shader);
+    whit_result result = hooks_try(content, &shader);
     if (result == WHIT_OK)
         result = draw("", shader, WHIT_NUMERICS_WATERTIGHT, NULL);
     if (result != wanted || !strstr(messages.last_error, part))

@@ -95,9 +95,7 @@ static void check(const char *content, const char *removed, const char *read)
 {
     uint64_t called = called_by_scene() & effects(LOOKS), expected = effects(read) & called;
     uint64_t compiled, whole;
-    own_whit_shader *shader = NULL;
-    if (hooks_load(content, &shader) != WHIT_OK)
-        fail_msg("%s", messages.last_error);
+    own_whit_shader *shader = hooks_load(content);
     whit_renderer_params params = params_of(shader, removed);
     own_whit_image *usual = draw(&params, &compiled);
     compiled &= called;
@@ -152,8 +150,7 @@ TEST(the_kernel_of_functions_has_what_they_read)
     scene_open(WHIT_SCENES_DIR "/default.json");
     for (size_t i = 0; i < sizeof contents / sizeof *contents; ++i) {
         uint64_t compiled;
-        own_whit_shader *shader = NULL;
-        assert_int_equal(hooks_load(contents[i], &shader), WHIT_OK);
+        own_whit_shader *shader = hooks_load(contents[i]);
         whit_renderer_params params = params_of(shader, "");
         uint32_t instructions = instructions_of(&params);
         assert_true(i == 0 || i == 3 || instructions > least);
@@ -175,10 +172,9 @@ TEST(the_kernel_of_functions_has_what_they_read)
 /* A renderer with keep_unread takes a version that reads more; another one must be made anew. */
 TEST(another_version_may_read_more)
 {
-    own_whit_shader *flat = NULL, *smooth = NULL;
     scene_open(WHIT_SCENES_DIR SHAPES);
-    assert_int_equal(hooks_load(SHADE "s.ng; }\n", &flat), WHIT_OK);
-    assert_int_equal(hooks_load(SHADE "s.ns; }\n", &smooth), WHIT_OK);
+    own_whit_shader *flat = hooks_load(SHADE "s.ng; }\n");
+    own_whit_shader *smooth = hooks_load(SHADE "s.ns; }\n");
     for (int keeps_all = 0; keeps_all < 2; ++keeps_all) {
         whit_renderer_params params = params_of(flat, RAYS);
         params.keep_unread = keeps_all;
