@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/text.h"
 #include "settings/quote.h"
@@ -358,6 +359,28 @@ bool cli_check_output(struct cli_reader *reader, const char *option, const char 
                       const char *hint)
 {
     return cli_no_dash(reader, option, path, hint) && cli_check_writable(reader, path);
+}
+
+/* Whether both name one file, under whatever names. Devices such as /dev/null are no files. */
+static bool are_one_file(const char *a, const char *b)
+{
+    struct stat first, second;
+    if (stat(a, &first) != 0 || stat(b, &second) != 0)
+        return strcmp(a, b) == 0;
+    return S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+}
+
+bool cli_check_apart(struct cli_reader *reader, const struct cli_file *files, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        for (uint32_t k = 0; k < i; ++k) {
+            const struct cli_file *a = &files[k], *b = &files[i];
+            if (a->path && b->path && (a->written || b->written) && are_one_file(a->path, b->path))
+                return cli_misuse(reader, "%s: %s and %s name the same file", b->path, a->name,
+                                  b->name);
+        }
+    }
+    return true;
 }
 
 /* ---- Words of a file ---- */

@@ -57,6 +57,15 @@ bool cli_check_writable(struct cli_reader *reader, const char *path);
 bool cli_check_output(struct cli_reader *reader, const char *option, const char *path,
                       const char *hint);
 
+/* A file of the command line, or one that a command finds by itself. */
+struct cli_file {
+    const char *name; /* of its option, or what it is */
+    const char *path; /* NULL: there is none */
+    bool written;
+};
+/* Calls cli_misuse where two of these, of which one is written, are the same file. */
+bool cli_check_apart(struct cli_reader *reader, const struct cli_file *files, uint32_t count);
+
 /* Option `i` of a command, including --help and options of kind SETTING_GONE; NULL: there are no
    more. */
 const struct setting *cli_option_at(const struct cli_command *command, uint32_t i);

@@ -76,6 +76,15 @@ says two 'cause: mesh "two.obj", vertex 3 .*; and material "floor", texture of d
 says new 'HEAD has no such case'
 check "nothing is left" test -z "$(ls "$TMPDIR")" -a "$(git worktree list | wc -l)" -eq 1
 
+# In a hook git names, by variables, the index of the commit that it makes; the tree of the revision has another one.
+echo more >more.txt
+printf '#!/bin/sh\n"%s" check suite/looks.whit --only slider --base HEAD >"%s/hook"\nexit 0\n' "$WHIT" "$OUT" >.git/hooks/pre-commit
+chmod +x .git/hooks/pre-commit
+check "a hook: the commit is made" sh -c 'git add more.txt && git commit -qam hooked'
+check "a hook: the cause is found" grep -q '^slider: differs: .*cause: --set from gain=2 to gain=3' "$OUT/hook"
+check "a hook: the commit has what was added and changed" test "$(git diff --name-only HEAD~1 | grep -c 'more.txt\|a.json')" -eq 2
+rm .git/hooks/pre-commit && git reset -q HEAD~1
+
 # The tree of the revision is removed even if whit is interrupted, or ended by a signal that no program can catch.
 is_there() { test -e "$(echo "$TMPDIR"/whit-base-*)/tree/suite/looks.whit"; }
 is_gone() { test -z "$(ls "$TMPDIR")" -a "$(git worktree list | wc -l)" -eq 1; }

@@ -57,10 +57,14 @@ check "JSON: what is, and what was" jq -e '.exit_code == 1 and (.cases | length)
     (.command | startswith("whit render balls.json --size 64x48 --depth 1 --portable on --numerics fast -o")))' ci/report.json >jq.out
 check "JUnit: three cases, two failures" grep -q 'tests="3" failures="2" errors="0"' ci/junit.xml
 check "JUnit: why" grep -q 'failure type="differs" message="differs: colours other' ci/junit.xml
-cp looks.golden before
-sed 's/--depth 1/--depth 2/' looks.whit >others.whit && cp looks.golden others.golden
-refuse 2 "a report of another suite" "report.json: balls-fast: it was drawn with other options" \
+mkdir copy && cp cube.json balls.json looks.golden copy/ && sed 's/--depth 1/--depth 2/' looks.whit >copy/looks.whit
+cp looks.whit others.whit && sed 's,"looks.whit","other/looks.whit",' ci/report.json >other.json
+refuse 2 "a report of another suite" "report.json: a report of the suite looks.whit, not of others.whit" \
     check others.whit --accept-from ci --reason x
+refuse 2 "a suite of the same name elsewhere" "other.json: a report of the suite other/looks.whit, not of copy/looks.whit" \
+    check copy/looks.whit --accept-from other.json --reason x
+refuse 2 "a report of other options" "report.json: balls-fast: it was drawn with other options" \
+    check "$PWD/copy/looks.whit" --accept-from ci --reason x
 sed 's/ rays 3072/ rays 9999/' ci/report.json >ci/second.json
 refuse 2 "two reports that differ" "second.json: cube: another report says something else" \
     check looks.whit --accept-from ci --reason x
@@ -71,7 +75,7 @@ refuse 2 "another file" "second.json: no report of" check looks.whit --accept-fr
 refuse 2 "no report" "nowhere.json: there is no such file" check looks.whit --accept-from nowhere.json
 cp ci/report.json ci/second.json
 check "nothing was written" cmp before looks.golden
-expect 0 "a report's lines" check looks.whit --accept-from ci --accept balls-watertight --reason "CI has it so"
+expect 0 "a report's lines" check looks.whit --accept-from ci --only 'balls-w*' --reason "CI has it so"
 check "one of them" grep -qx "1 case, 1 accepted" stdout
 check "with its reason" grep -qx " balls-watertight why CI has it so" looks.golden
 check "the other one stays" test "$(diff before looks.golden | grep -c "^<")" -eq 2
@@ -84,6 +88,37 @@ expect 0 "with a reason" check looks.whit --accept 'balls-*' --reason "two bounc
 check "it is shown first" grep -q "^balls-watertight: differs: " stdout
 check "it is kept" test "$(grep -c ' why two bounces less$' looks.golden)" -eq 2
 expect 0 "as it is now" check looks.whit
+refuse 2 "two outputs in one file" "x: --json and --junit name the same file" check looks.whit --json x --junit x
+ln looks.golden link
+refuse 2 "an output in the golden" "link: the golden and --report name the same file" check looks.whit --report link
+rm link
+expect 0 "JSON on standard output" check looks.whit --json /dev/stdout
+check "is nothing else" jq -e '.cases | length == 3' stdout >jq.out
+check "lines for people are on the other" grep -qx "3 cases, 3 ok" stderr
+expect 2 "a report that cannot be written" check looks.whit --json nowhere/x --junit junit.xml
+expect 2 "a full disk" check looks.whit --json /dev/full --junit junit.xml
+check "the next one is" grep -q 'tests="3" failures="0"' junit.xml
+refuse 2 "nothing is accepted" "no case is named by both --only and --accept" check looks.whit --only cube --accept 'balls-*'
+cp looks.whit looks.suite
+refuse 2 "two suites with one golden" "looks.suite has the same golden" check looks.whit --accept all --prune
+rm looks.suite
+
+# A golden that cannot be saved: nothing counts as accepted. Of two processes, the second adds to what the first has
+# saved.
+cp cube.json balls.json copy/
+printf 'cube cube.json --size 16x12\nballs balls.json --size 16x12\nbad cube.json --size 16x12 --leaf 2\nbad expect hits == 0\n' \
+    >copy/looks.whit
+rm copy/looks.golden
+expect 1 "nothing to accept" check copy/looks.whit --accept bad
+check "begins no golden" test ! -e copy/looks.golden
+(ulimit -f 0 && exec "$WHIT" check copy/looks.whit --on reference --accept cube 2>&1) | cat >stdout
+check "the error" grep -q "copy/looks.reference.golden: cannot write: " stdout
+check "the verdict" grep -qx "1 case, 1 new" stdout
+"$WHIT" check copy/looks.whit --accept cube >first 2>&1 &
+expect 0 "accepted at once" check copy/looks.whit --accept balls
+wait $!
+check "both are kept" test "$(grep -c "^case" copy/looks.golden)" -eq 2
+check "and no lock" test ! -e copy/looks.golden.lock
 expect 0 "once more" check looks.whit --accept all --reason "no reason at all"
 check "what is as it was keeps its reason" test "$(grep -c ' why two bounces less$' looks.golden)" -eq 2
 

@@ -22,7 +22,7 @@ static bool read_text(struct suite *suite, const char *text, const char *root)
     put_text("sky.hdr", "");
     (void)mkdir(in_folder("sub"), 0777);
     put_text("sub/b.json", "");
-    return suite_read(suite, put_text("s.whit", text), root, false, say, NULL);
+    return suite_read(suite, put_text("s.whit", text), root, NULL, say, NULL);
 }
 
 TEST_IN(lines_become_cases, folder_begin, folder_end)
@@ -169,7 +169,7 @@ TEST_IN(no_suite_is_told, folder_begin, folder_end)
     suite_finish(&suite);
     const char *path = put_data("z.whit", zero, sizeof zero);
     said[0] = '\0';
-    assert_false(suite_read(&suite, path, NULL, false, say, NULL));
+    assert_false(suite_read(&suite, path, NULL, NULL, say, NULL));
     assert_string_equal(said, "z.whit: not a suite: it has bytes that are 0\n");
     suite_finish(&suite);
 }

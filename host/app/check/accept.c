@@ -51,14 +51,11 @@ static bool put_case(struct check *check, const struct check_result *result)
     return put;
 }
 
-static bool take(struct check *check, struct check_result *result)
+/* Marks a case of the saved golden as accepted. False: its thumbnail could not be saved. */
+static bool note_accepted(struct check *check, struct check_result *result)
 {
     bool is_new = result->verdict == CHECK_DIFFERS || result->verdict == CHECK_NEW ||
                   result->verdict == CHECK_SAME;
-    if (!put_case(check, result)) {
-        cli_error("out of memory");
-        return false;
-    }
     if (check->thumbnails && check_save_thumbnail(check, result) != WHIT_OK)
         return false;
     if (is_new)
@@ -72,26 +69,52 @@ int check_accept(struct check *check)
         return EXIT_USAGE;
     for (uint32_t i = 0; i < check->suite.count; ++i) {
         struct check_result *result = &check->results[i];
-        if (can_accept(result) && check_names_match(&check->accept, result->item->name) &&
-            !take(check, result))
+        if (can_accept(result) && !put_case(check, result))
+            return cli_exit_of(cli_no_memory());
+    }
+    int saved = check_prune(check);
+    for (uint32_t i = 0; saved == EXIT_FINE && i < check->suite.count; ++i) {
+        struct check_result *result = &check->results[i];
+        if (can_accept(result) && !note_accepted(check, result))
             return EXIT_USAGE;
     }
-    return check_prune(check);
+    return saved;
+}
+
+/* Removes the cases that the suite does not have. */
+static void drop_cases(struct golden *golden, const struct suite *suite)
+{
+    for (uint32_t i = golden->count; i-- > 0;) {
+        if (!suite_find(suite, golden->cases[i].name))
+            golden_remove(golden, i);
+    }
+}
+
+/* Says which cases the saved golden no longer has. */
+static void say_dropped(const struct check *check)
+{
+    for (uint32_t i = 0; i < check->old.count; ++i) {
+        const char *name = check->old.cases[i].name;
+        if (golden_find(&check->golden, name))
+            continue;
+        fprintf(check_lines(check), "%s: dropped\n", name);
+        check_drop_thumbnail(check, name);
+    }
 }
 
 int check_prune(struct check *check)
 {
-    for (uint32_t i = check->prune ? check->golden.count : 0; i-- > 0;) {
-        if (suite_find(&check->suite, check->golden.cases[i].name))
-            continue;
-        printf("%s: dropped\n", check->golden.cases[i].name);
-        check_drop_thumbnail(check, check->golden.cases[i].name);
-        golden_remove(&check->golden, i);
-    }
+    if (check->prune)
+        drop_cases(&check->golden, &check->suite);
+    if (!check->old.exists && !check->golden.count)
+        return EXIT_FINE; /* nothing was accepted, so there is no golden to begin */
     whit_result result = golden_save(&check->golden, check->golden_path);
-    if (result == WHIT_OK && !check->old.exists && !check->settings.quiet)
+    if (result != WHIT_OK)
+        return cli_exit_of(result);
+    say_dropped(check);
+    if (!check->old.exists && !check->settings.quiet)
         cli_note("%s is new: with `*.golden merge=union` in .gitattributes git merges what two "
                  "people accept at one place",
                  check->golden_path);
-    return result == WHIT_OK ? cli_finish_stdout(EXIT_FINE) : cli_exit_of(result);
+    return cli_finish_stdout(EXIT_FINE);
 }

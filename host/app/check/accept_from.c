@@ -94,7 +94,7 @@ static bool take_case(struct check *check, const char *path, const json_t *item)
     const struct check_case *of = suite_find(&check->suite, name);
     struct check_result *result = of ? &check->results[of - check->suite.cases] : NULL;
     snprintf(where, sizeof where, "%.800s: %.100s", path, name);
-    if (!result || !check_names_match(&check->accept, name))
+    if (!result || !check->wanted[of - check->suite.cases])
         return true;
     enum check_verdict bad = CHECK_UNMET;
     while (bad < CHECK_VERDICTS && strcmp(verdict, verdict_word(bad)) != 0)
@@ -124,6 +124,30 @@ static bool is_of_kind(const struct check *check, const char *path, const json_t
     return false;
 }
 
+/* Whether two paths may be of the same suite. They may be named from different folders, so that one
+   is the end of the other. Of absolute paths, which may be those of different machines, only the
+   file's name is compared. */
+static bool may_be_same(const char *a, const char *b)
+{
+    const char *a_at = a + strlen(a), *b_at = b + strlen(b);
+    if (a[0] == '/' || b[0] == '/')
+        return strcmp(path_name(a), path_name(b)) == 0;
+    while (a_at > a && b_at > b && a_at[-1] == b_at[-1]) {
+        --a_at;
+        --b_at;
+    }
+    return (a_at == a && (b_at == b || b_at[-1] == '/')) || (b_at == b && a_at[-1] == '/');
+}
+
+static bool is_of_suite(const struct check *check, const char *path, const json_t *root)
+{
+    const char *suite = json_string_value(json_object_get(root, "suite"));
+    if (!suite || may_be_same(suite, check->suite.path))
+        return true;
+    cli_error("%s: a report of the suite %s, not of %s", path, cli_shown(suite), check->suite.path);
+    return false;
+}
+
 static bool read_report(struct check *check, const char *path)
 {
     uint8_t *data = NULL;
@@ -140,7 +164,7 @@ static bool read_report(struct check *check, const char *path)
         cli_error("%s:%d: %s", path, error.line, error.text);
     else if (!read)
         cli_error("%s: no report of `whit check --json`", path);
-    read = read && is_of_kind(check, path, root);
+    read = read && is_of_kind(check, path, root) && is_of_suite(check, path, root);
     json_array_foreach(cases, index, item)
     {
         if (!read)

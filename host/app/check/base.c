@@ -28,7 +28,7 @@ whit_result base_open(struct base *base, const char *suite, const char *root, co
         base->root = root ? worktree_folder(&base->tree, root) : NULL;
         base->path = base->folder ? string_format("%s%s", base->folder, path_name(suite)) : NULL;
         if (!base->path || (root && !base->root) ||
-            !suite_read(&base->suite, base->path, base->root, false, say_wrong, base))
+            !suite_read(&base->suite, base->path, base->root, NULL, say_wrong, base))
             result = WHIT_ERROR_INPUT;
     }
     free(folder);

@@ -61,15 +61,15 @@ static const struct cli_command case_command = {
 
 /* Resolves a file name in the suite into a path relative to the working folder; false, with the
    reason. */
-static bool find_file(const struct suite *suite, const char *option, char *name, size_t name_bytes,
-                      struct cli_reader *reader)
+static bool find_file(const struct suite *suite, const struct check_case *item, const char *option,
+                      char *name, size_t name_bytes, struct cli_reader *reader)
 {
     char *path = roots_join(suite->roots.named, name);
     errno = 0;
     enum reach reach = path ? roots_reach(&suite->roots, path) : REACH_MISSING;
     bool fits = path && strlen(path) < name_bytes;
     bool good = false;
-    if (suite->names && reach == REACH_MISSING)
+    if (reach == REACH_MISSING && suite->needs && !suite->needs(suite->user, item->name))
         reach = REACH_FILE;
     if (!path)
         cli_misuse(reader, "out of memory");
@@ -93,11 +93,12 @@ static bool take_files(struct check_case *item, const struct suite *suite,
                        struct cli_reader *reader)
 {
     struct settings *settings = item->settings;
-    return find_file(suite, "the scene ", settings->scene, sizeof settings->scene, reader) &&
-           (!settings->environment[0] || find_file(suite, "--environment ", settings->environment,
-                                                   sizeof settings->environment, reader)) &&
+    return find_file(suite, item, "the scene ", settings->scene, sizeof settings->scene, reader) &&
+           (!settings->environment[0] ||
+            find_file(suite, item, "--environment ", settings->environment,
+                      sizeof settings->environment, reader)) &&
            (!settings->shader[0] ||
-            find_file(suite, "--shader ", settings->shader, sizeof settings->shader, reader));
+            find_file(suite, item, "--shader ", settings->shader, sizeof settings->shader, reader));
 }
 
 /* Writes the scene and options of these settings as words. NULL: out of memory, or they are too

@@ -36,7 +36,11 @@ struct check {
 /* Whether one of the patterns is `name`; "all" stands for every name. */
 bool check_names_match(const struct check_names *names, const char *name);
 
-/* accept_from.c: fills the results of the cases that --accept names from the reports of
+/* Where lines for people go: standard output, or standard error where a report goes to standard
+   output. */
+FILE *check_lines(const struct check *check);
+
+/* accept_from.c: fills the results of the cases in `wanted` from the reports of
    --accept-from. False, with an error, where a report is damaged or does not fit the suite. */
 bool check_read_reports(struct check *check);
 

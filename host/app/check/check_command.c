@@ -1,5 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "app/arguments.h"
 #include "app/check/accept.h"
@@ -11,6 +12,8 @@
 #include "app/commands.h"
 #include "app/document.h"
 #include "base/array.h"
+#include "base/file.h"
+#include "base/lock.h"
 
 /* Time to stop after a signal, before the run ends without its reports: a driver that compiles a
    kernel cannot be stopped. */
@@ -93,6 +96,16 @@ static const struct setting options[] = {
     {0},
 };
 
+FILE *check_lines(const struct check *check)
+{
+    const char *const reports[] = {check->json, check->junit, check->report};
+    for (size_t i = 0; i < sizeof reports / sizeof *reports; ++i) {
+        if (reports[i] && strcmp(reports[i], "/dev/stdout") == 0)
+            return stderr;
+    }
+    return stdout;
+}
+
 bool check_names_match(const struct check_names *names, const char *name)
 {
     for (uint32_t i = 0; i < names->count; ++i) {
@@ -105,9 +118,29 @@ bool check_names_match(const struct check_names *names, const char *name)
 static bool check_outputs(struct cli_reader *reader, const struct check *check)
 {
     static const char *const hint = "for a pipe give /dev/stdout";
-    return cli_check_output(reader, "--json", check->json, hint) &&
+    const struct cli_file files[] = {{"the suite", reader->positional, false},
+                                     {"the golden", check->golden_path, true},
+                                     {"--accept-from", check->accept_from, false},
+                                     {"--json", check->json, true},
+                                     {"--junit", check->junit, true},
+                                     {"--report", check->report, true}};
+    return cli_check_apart(reader, files, sizeof files / sizeof *files) &&
+           cli_check_output(reader, "--json", check->json, hint) &&
            cli_check_output(reader, "--junit", check->junit, hint) &&
            cli_check_output(reader, "--report", check->report, hint);
+}
+
+/* Refuses to change a golden that another suite beside this one has too. */
+static bool check_golden(struct cli_reader *reader, const struct check *check)
+{
+    char *other =
+        check->accept.count || check->prune ? golden_other_suite(reader->positional) : NULL;
+    bool shared = other && file_exists(other);
+    if (shared)
+        cli_misuse(reader, "%s: %s has the same golden, %s: rename one of the suites",
+                   reader->positional, other, check->golden_path);
+    free(other);
+    return !shared;
 }
 
 static bool check_request(struct cli_reader *reader, struct check *check)
@@ -137,7 +170,7 @@ static bool check_request(struct cli_reader *reader, struct check *check)
         (check->settings.device[0] || check->settings.validation))
         return cli_misuse(reader, "--on reference uses no device: --%s is of one",
                           check->settings.device[0] ? "device" : "validation");
-    if (!check_outputs(reader, check))
+    if (!check_outputs(reader, check) || !check_golden(reader, check))
         return false;
     if (check->reason && (!check->reason[0] || strlen(check->reason) > GOLDEN_REASON_MAX))
         return cli_misuse(reader, "--reason: 1 to %d bytes are needed", GOLDEN_REASON_MAX);
@@ -164,6 +197,20 @@ static bool check_patterns(const struct check *check, const struct check_names *
     return true;
 }
 
+static bool is_named(const struct check *check, const char *name)
+{
+    return (!check->only.count || check_names_match(&check->only, name)) &&
+           (!check->accept.count || check_names_match(&check->accept, name));
+}
+
+/* For suite_read: of cases that are not drawn, no file need be there, as another test may make
+   it. */
+static bool needs_files(const void *user, const char *name)
+{
+    const struct check *check = user;
+    return !check->list && is_named(check, name);
+}
+
 static bool choose(struct check *check)
 {
     uint32_t count = check->suite.count;
@@ -176,11 +223,17 @@ static bool choose(struct check *check)
     for (uint32_t i = 0; i < count; ++i) {
         const char *name = check->suite.cases[i].name;
         check->results[i].item = &check->suite.cases[i];
-        check->wanted[i] = (!check->only.count || check_names_match(&check->only, name)) &&
-                           (!check->accept.count || check_names_match(&check->accept, name));
+        check->wanted[i] = is_named(check, name);
     }
-    return check_patterns(check, &check->only, "--only") &&
-           check_patterns(check, &check->accept, "--accept");
+    if (!check_patterns(check, &check->only, "--only") ||
+        !check_patterns(check, &check->accept, "--accept"))
+        return false;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (check->wanted[i])
+            return true;
+    }
+    cli_error("%s: no case is named by both --only and --accept", check->suite.path);
+    return false;
 }
 
 /* ---- Cases ---- */
@@ -308,8 +361,8 @@ static void print_result(const struct check *check, const struct check_result *r
 {
     if (check->settings.quiet && (result->verdict == CHECK_OK || result->verdict == CHECK_SAME))
         return;
-    printf("%s: %s\n", result->item->name, cli_shown(result->text));
-    fflush(stdout);
+    fprintf(check_lines(check), "%s: %s\n", result->item->name, cli_shown(result->text));
+    fflush(check_lines(check));
 }
 
 static const char *why_undrawn(whit_result result)
@@ -374,12 +427,13 @@ static void print_counts(const struct check *check)
     for (uint32_t i = 0; i < check->suite.count; ++i)
         ++counts[check->results[i].verdict];
     drawn = check->suite.count - counts[CHECK_NOT_RUN] - counts[CHECK_UNDRAWN];
-    printf("%u case%s", drawn, drawn == 1 ? "" : "s");
+    FILE *to = check_lines(check);
+    fprintf(to, "%u case%s", drawn, drawn == 1 ? "" : "s");
     for (uint32_t verdict = CHECK_OK; verdict < CHECK_VERDICTS; ++verdict) {
         if (counts[verdict])
-            printf(", %u %s", counts[verdict], verdict_word((enum check_verdict)verdict));
+            fprintf(to, ", %u %s", counts[verdict], verdict_word((enum check_verdict)verdict));
     }
-    putchar('\n');
+    fputc('\n', to);
 }
 
 static uint32_t count_gone(const struct check *check)
@@ -423,16 +477,17 @@ static bool take_reports(struct check *check)
     return read;
 }
 
+/* Saves each report, even if another cannot be saved. Gives the first error. */
 static whit_result save_reports(const struct check *check, int status)
 {
-    whit_result result = WHIT_OK;
+    whit_result results[3] = {WHIT_OK, WHIT_OK, WHIT_OK};
     if (check->json)
-        result = document_save(check_document(check, status), check->json);
-    if (result == WHIT_OK && check->junit)
-        result = check_save_junit(check);
-    if (result == WHIT_OK && check->report)
-        result = check_save_page(check, status);
-    return result;
+        results[0] = document_save(check_document(check, status), check->json);
+    if (check->junit)
+        results[1] = check_save_junit(check);
+    if (check->report)
+        results[2] = check_save_page(check, status);
+    return results[0] != WHIT_OK ? results[0] : results[1] != WHIT_OK ? results[1] : results[2];
 }
 
 /* Draws the cases, or reads reports. *read: false, with a message, where a report or the suite of
@@ -486,19 +541,48 @@ static void say_wrong(void *user, const char *text)
     cli_error("%s", text);
 }
 
+static bool changes_golden(const struct check *check)
+{
+    return check->accept.count || check->prune;
+}
+
+/* Locks the golden, from before it is read until it is saved, so that of two processes that accept
+   at once the second adds to what the first has saved. False: that is not possible, or the user
+   does not want to wait. */
+static bool lock_golden(const struct check *check, struct lock *lock)
+{
+    enum { LOOK_AGAIN_MS = 20 };
+    bool told = false;
+    for (;;) {
+        enum lock_end end = lock_take(&cli_log, check->golden_path, lock);
+        if (end != LOCK_OTHERS || cli_cancel)
+            return end == LOCK_MINE;
+        if (!told && !check->settings.quiet)
+            cli_note("%s: another process is accepting into it; waiting", check->golden_path);
+        told = true;
+        nanosleep(&(struct timespec){.tv_nsec = LOOK_AGAIN_MS * 1000000L}, NULL);
+    }
+}
+
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
     struct check check = {.settings = settings_usual()};
+    struct lock lock = {.path = NULL};
     struct job common = {.start_ms = whit_clock_ms()};
     cli_reader_init(&reader, command, argc, argv);
-    if (!cli_read(&reader, &check, &check.settings) || !check_request(&reader, &check))
+    if (!cli_read(&reader, &check, &check.settings))
         return reader.status;
-    check.golden_path = golden_path(reader.positional, (enum golden_kind)check.on);
+    if (reader.positional)
+        check.golden_path = golden_path(reader.positional, (enum golden_kind)check.on);
+    if (!check_request(&reader, &check)) {
+        free(check.golden_path);
+        return reader.status;
+    }
     int status = EXIT_USAGE;
     common.settings = check.settings;
-    if (suite_read(&check.suite, reader.positional, check.root, check.list, say_wrong, NULL) &&
-        check.golden_path &&
+    if (suite_read(&check.suite, reader.positional, check.root, needs_files, say_wrong, &check) &&
+        check.golden_path && (!changes_golden(&check) || lock_golden(&check, &lock)) &&
         golden_read(&check.golden, check.golden_path, (enum golden_kind)check.on) &&
         golden_read(&check.old, check.golden_path, (enum golden_kind)check.on) && choose(&check)) {
         if (check.json || check.junit || check.report)
@@ -513,6 +597,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     golden_finish(&check.golden);
     golden_finish(&check.old);
     suite_finish(&check.suite);
+    lock_give_back(&lock);
     free(check.golden_path);
     return status;
 }

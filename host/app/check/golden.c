@@ -394,17 +394,36 @@ bool golden_read(struct golden *golden, const char *path, enum golden_kind kind)
 
 /* ---- Writing ---- */
 
-char *golden_path(const char *suite, enum golden_kind kind)
+static const char *const endings[] = {".whit", ".suite"};
+enum { ENDINGS = sizeof endings / sizeof *endings };
+
+/* The index of the suite's ending; ENDINGS: it has none of them. */
+static uint32_t find_ending(const char *suite)
 {
-    static const char *const endings[] = {".whit", ".suite"};
-    size_t length = strlen(suite), name = strlen(path_name(suite));
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; ++i) {
+    size_t name = strlen(path_name(suite));
+    for (uint32_t i = 0; i < ENDINGS; ++i) {
         size_t bytes = strlen(endings[i]);
         if (name > bytes && strcmp(suite + strlen(suite) - bytes, endings[i]) == 0)
-            length -= bytes;
+            return i;
     }
+    return ENDINGS;
+}
+
+char *golden_path(const char *suite, enum golden_kind kind)
+{
+    uint32_t ending = find_ending(suite);
+    size_t length = strlen(suite) - (ending < ENDINGS ? strlen(endings[ending]) : 0);
     return string_format("%.*s%s.golden", (int)length, suite,
                          kind == GOLDEN_OF_REFERENCE ? ".reference" : "");
+}
+
+char *golden_other_suite(const char *suite)
+{
+    uint32_t ending = find_ending(suite);
+    return ending == ENDINGS
+               ? NULL
+               : string_format("%.*s%s", (int)(strlen(suite) - strlen(endings[ending])), suite,
+                               endings[!ending]);
 }
 
 /* Each line names its case, so that it is understood wherever a merge puts it, and no two cases

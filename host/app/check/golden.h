@@ -48,6 +48,9 @@ struct golden {
 /* The path of the suite's golden: .whit or .suite is replaced by .golden, or by .reference.golden;
    free() it. NULL: out of memory. */
 char *golden_path(const char *suite, enum golden_kind kind);
+/* The path of the suite that would have the same golden: with .suite in place of .whit, or .whit in
+   place of .suite; free() it. NULL: out of memory, or the suite has neither ending. */
+char *golden_other_suite(const char *suite);
 /* Reads a golden; it is empty where there is no file. False, with an error that names file and
    line, where the file is damaged, cannot be read, or is of the other kind. Call golden_finish() in
    any case. */

@@ -280,12 +280,12 @@ static bool begin_roots(struct suite *suite, const char *root)
     return known;
 }
 
-bool suite_read(struct suite *suite, const char *path, const char *root, bool names,
+bool suite_read(struct suite *suite, const char *path, const char *root, suite_needs *needs,
                 void (*say)(void *user, const char *text), void *user)
 {
     uint8_t *data = NULL;
     size_t size_bytes = 0;
-    *suite = (struct suite){.path = path, .names = names, .say = say, .user = user};
+    *suite = (struct suite){.path = path, .needs = needs, .say = say, .user = user};
     struct line line = {.suite = suite};
     snprintf(line.where, sizeof line.where, "%.500s", path);
     if (file_read(&cli_log, NULL, path, SUITE_BYTES_MAX, &data, &size_bytes) != WHIT_OK)

@@ -19,23 +19,26 @@ struct check_case {
     uint32_t expectation_count, expectation_capacity;
 };
 
+/* Whether the files that a case of this name has must exist. */
+typedef bool suite_needs(const void *user, const char *name);
+
 struct suite {
     const char *path;
     struct roots roots;       /* where its files may lie */
     struct check_case *cases; /* in the order of the file */
     uint32_t count, capacity;
     uint32_t wrong; /* number of wrong lines */
-    bool names;     /* files of cases need not exist */
+    suite_needs *needs;
     /* Gets "FILE:LINE: reason" for each wrong line. */
     void (*say)(void *user, const char *text);
     void *user;
 };
 
 /* Reads all lines. `root`: the folder that files lie below and are named from; NULL: the suite's
-   own. On the disk it only checks that files exist; `names`: not even that, where only the names of
-   cases are wanted. False, with messages, where a line is wrong or the file cannot be read. Call
+   own. On the disk it only checks that files exist, of the cases that `needs` is true for; NULL: of
+   all. False, with messages, where a line is wrong or the file cannot be read. Call
    suite_finish() in any case. */
-bool suite_read(struct suite *suite, const char *path, const char *root, bool names,
+bool suite_read(struct suite *suite, const char *path, const char *root, suite_needs *needs,
                 void (*say)(void *user, const char *text), void *user);
 void suite_finish(struct suite *suite);
 /* The case of that name; NULL: there is none. */

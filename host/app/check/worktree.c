@@ -19,21 +19,69 @@ extern char **environ;
 /* The worktree's folder inside of `holder`. */
 #define TREE "/tree"
 
+/* Variables that git sets for its hooks (`git rev-parse --local-env-vars`). With them `git worktree
+   add` would write into the index and the repository of the commit that is being made. */
+static bool is_of_hook(const char *variable)
+{
+    static const char *const names[] = {"GIT_ALTERNATE_OBJECT_DIRECTORIES",
+                                        "GIT_COMMON_DIR",
+                                        "GIT_CONFIG",
+                                        "GIT_CONFIG_COUNT",
+                                        "GIT_CONFIG_PARAMETERS",
+                                        "GIT_DIR",
+                                        "GIT_GRAFT_FILE",
+                                        "GIT_IMPLICIT_WORK_TREE",
+                                        "GIT_INDEX_FILE",
+                                        "GIT_INTERNAL_SUPER_PREFIX",
+                                        "GIT_NO_REPLACE_OBJECTS",
+                                        "GIT_OBJECT_DIRECTORY",
+                                        "GIT_PREFIX",
+                                        "GIT_REPLACE_REF_BASE",
+                                        "GIT_SHALLOW_FILE",
+                                        "GIT_WORK_TREE"};
+    size_t length = strcspn(variable, "=");
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
+        if (strlen(names[i]) == length && memcmp(names[i], variable, length) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* The environment without those, for free(); NULL: out of memory. */
+static char **environment_for_git(void)
+{
+    size_t count = 0, kept = 0;
+    while (environ[count])
+        ++count;
+    char **all = array_alloc(count + 1, sizeof *all);
+    for (size_t i = 0; all && i < count; ++i) {
+        if (!is_of_hook(environ[i]))
+            all[kept++] = environ[i];
+    }
+    if (all)
+        all[kept] = NULL;
+    return all;
+}
+
 /* Starts a program with these as its standard input and output; -1: /dev/null. Gives 0 or an
    errno. */
 static int start(const char *const *words, int in, int out, pid_t *pid)
 {
     posix_spawn_file_actions_t actions;
-    int failed = posix_spawn_file_actions_init(&actions);
-    if (failed)
+    char **environment = environment_for_git();
+    int failed = environment ? posix_spawn_file_actions_init(&actions) : ENOMEM;
+    if (failed) {
+        free(environment);
         return failed;
+    }
     const int from[] = {in, out, out};
     for (int i = 0; !failed && i < 3; ++i)
         failed = from[i] < 0 ? posix_spawn_file_actions_addopen(&actions, i, "/dev/null", O_RDWR, 0)
                              : posix_spawn_file_actions_adddup2(&actions, from[i], i);
     if (!failed)
-        failed = posix_spawnp(pid, words[0], &actions, NULL, (char *const *)words, environ);
+        failed = posix_spawnp(pid, words[0], &actions, NULL, (char *const *)words, environment);
     posix_spawn_file_actions_destroy(&actions);
+    free(environment);
     return failed;
 }
 

@@ -335,8 +335,14 @@ static bool check_request(struct cli_reader *reader, struct compare *compare)
     compare->paths[1] = reader->second;
     if (!compare->paths[1])
         return cli_misuse(reader, "%s missing", compare->paths[0] ? "B is" : "A and B are");
+    const struct cli_file files[] = {{"A", compare->paths[0], false},
+                                     {"B", compare->paths[1], false},
+                                     {"--diff", compare->diff, true},
+                                     {"--flip", compare->flip, true},
+                                     {"--json", compare->json, true}};
     return check_picture(reader, "--diff", compare->diff) &&
            check_picture(reader, "--flip", compare->flip) &&
+           cli_check_apart(reader, files, sizeof files / sizeof *files) &&
            cli_no_dash(reader, "--json", compare->json, "for a pipe give /dev/stdout") &&
            cli_check_writable(reader, compare->diff) && cli_check_writable(reader, compare->flip) &&
            cli_check_writable(reader, compare->json);

@@ -84,19 +84,16 @@ static const struct setting options[] = {
 
 static bool check_files(struct cli_reader *reader, const struct cost *cost)
 {
-    const char *const names[] = {"--html", "--json", "--csv", "--markdown"};
-    const char *const files[] = {cost->html, cost->json, cost->csv, cost->markdown};
-    for (int i = 0; i < 4; ++i) {
-        if (!cli_no_dash(reader, names[i], files[i], "for a pipe give /dev/stdout"))
-            return false;
-        for (int k = 0; k < i; ++k)
-            if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
-                return cli_misuse(reader, "%s: %s and %s name the same file", files[i], names[k],
-                                  names[i]);
-        if (!cli_check_writable(reader, files[i]))
+    enum { FILES = 4 };
+    const struct cli_file files[FILES] = {{"--html", cost->html, true},
+                                          {"--json", cost->json, true},
+                                          {"--csv", cost->csv, true},
+                                          {"--markdown", cost->markdown, true}};
+    for (int i = 0; i < FILES; ++i) {
+        if (!cli_check_output(reader, files[i].name, files[i].path, "for a pipe give /dev/stdout"))
             return false;
     }
-    return true;
+    return cli_check_apart(reader, files, FILES);
 }
 
 static void complete(struct cost *cost)

@@ -89,11 +89,11 @@ static bool check_outputs(struct cli_reader *reader, const struct render_request
         return cli_misuse(reader, "%s: hit identities are .exr", request->ids);
     if (distances && (path_is(distances, "png") || !whit_image_format_known(distances, false)))
         return cli_misuse(reader, "%s: distances are .exr or .pfm", distances);
-    if (request->ids && strcmp(request->ids, request->output) == 0)
-        return cli_misuse(reader, "%s: -o and --ids name the same file", request->ids);
-    if (distances && (strcmp(distances, request->output) == 0 ||
-                      (request->ids && strcmp(distances, request->ids) == 0)))
-        return cli_misuse(reader, "%s: --distances names the file of another option", distances);
+    const struct cli_file files[] = {{"-o", request->output, true},
+                                     {"--ids", request->ids, true},
+                                     {"--distances", distances, true}};
+    if (!cli_check_apart(reader, files, sizeof files / sizeof *files))
+        return false;
     if (can_write(request, request->output) &&
         (!request->ids || can_write(request, request->ids)) &&
         (!distances || can_write(request, distances)))
