@@ -92,6 +92,7 @@ void whit_scene_get_info(const whit_scene *handle, whit_scene_info *info)
         .camera_count = scene->camera_count,
         .note_count = scene->note_count,
         .effect_count = SCENE_EFFECT_COUNT,
+        .textures_missing = scene->textures_missing,
         .triangle_count = scene->triangle_total,
         .sphere_count = scene->sphere_total,
         .file_bytes = scene->file_bytes,

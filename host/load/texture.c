@@ -228,8 +228,10 @@ whit_result load_texture(struct scene *scene, const char *path, const uint8_t *d
     snprintf(why, sizeof why, "out of memory for a texture");
     if ((damaged && !make_magenta(&picture)) || !shrink(scene, name, params, &picture))
         goto done;
-    if (add(scene, name, &picture, damaged, &source, index))
+    if (add(scene, name, &picture, damaged, &source, index)) {
+        scene->textures_missing += damaged;
         result = WHIT_OK;
+    }
     name = NULL;
     picture = (struct picture){0};
 done:

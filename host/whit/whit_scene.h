@@ -83,6 +83,7 @@ const char *whit_environment_kind_name(whit_environment_kind kind);
 typedef struct whit_scene_info {
     uint32_t mesh_count, instance_count, node_count, material_count, texture_count, light_count,
         camera_count, note_count, effect_count;
+    uint32_t textures_missing;    /* pictures that could not be read; magenta takes their place */
     uint64_t mesh_triangle_count; /* counts each mesh once */
     uint64_t triangle_count;      /* over all instances */
     uint64_t sphere_count;        /* over all instances */

@@ -44,6 +44,9 @@ git init -q . && git config user.name a && git config user.email a@b
 expect 0 "accepted" check suite/looks.whit --accept all
 sed '/^new/d' suite/looks.whit >without
 mv suite/looks.whit with && mv without suite/looks.whit && git add -A && git commit -qm first && mv with suite/looks.whit
+cp suite/looks.whit suite/later.whit
+refuse 2 "a suite that was not there" "base HEAD: it has no suite/later.whit" check suite/later.whit --base HEAD
+rm suite/later.whit
 refuse 2 "no such revision" "base nope: fatal: invalid reference" check suite/looks.whit --base nope
 refuse 2 "an option for a revision" "base --help: no revision" check suite/looks.whit --base=--help
 

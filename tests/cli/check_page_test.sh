@@ -25,6 +25,7 @@ expect 0 "all as it was" check looks.whit --report fine.html
 check "nothing to compare" test "$(report fine.html | jq '[.cases[] | select(.before)] | length')" -eq 0
 check "three pictures" test "$(report fine.html | jq '[.cases[] | select(.after)] | length')" -eq 3
 
+check "what is fine takes little room" test "$(report fine.html | jq '[.cases[] | select(.command or .is or .was)] | length')" -eq 0
 rm looks.thumbnails/lost.png
 sed -i 's/"intensity": 24/"intensity": 12/; s/"name": "cube"/"name": "<\/script>"/' cube.json
 expect 1 "a dimmer light" check looks.whit --report page.html

@@ -168,6 +168,11 @@ check "nothing is drawn" test ! -s stdout
 sed -n 's/^ *REFUSED("\([^"]*\)".*/--\1/p' "$SCENES/../host/app/check/case_options.c" >refused
 check "each option that no case may have is in docs/check.md" test "$(wc -l <refused)" -gt 20 -a \
     "$(while read -r option; do grep -qF -- "\`$option\`" "$SCENES/../docs/check.md" || echo "$option"; done <refused)" = ""
+refuse 2 "no folder" "root nowhere: there is no such folder" check looks.whit --root nowhere
+printf 'a cube.json --cameras x\n' >cameras.whit
+refuse 2 "several pictures" "cameras.whit:1: .*--cameras.*makes several pictures" check cameras.whit
+printf 'a cube.json --size 16x12\na expect pixel(-1,0) == 0\n' >pixel.whit
+refuse 2 "no such pixel" "pixel.whit:2: .*two whole numbers from 0 on" check pixel.whit
 refuse 2 "no suite" "a suite is missing" check
 refuse 2 "no such suite" "nowhere.whit: there is no such file" check nowhere.whit
 refuse 2 "no such case" "looks.whit has no such case" check looks.whit --accept cube nothing
@@ -186,6 +191,12 @@ check "all are counted" grep -qx "3 cases, 1 new, 2 broken" stdout
 expect 2 "nor accepted" check looks.whit --accept all
 check "the others are" grep -q "^case fine of " looks.golden
 printf 'mtllib nowhere.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >tri.obj
+printf 'newmtl a\nmap_Kd nowhere.png\n' >lost.mtl
+printf 'mtllib lost.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n' >lost.obj
+echo 'lost lost.obj --size 16x12' >lost.whit
+expect 0 "a texture that is missing" check lost.whit --accept all --json lost_report.json
+check "is told" grep -qx "lost: no golden; 1 texture cannot be read and is magenta" stdout
+check "in reports too" grep -q "accepted: no golden; 1 texture cannot be read" lost_report.json
 printf 'one tri.obj --size 16x12\ntwo tri.obj --size 16x12 --depth 0\n' >models.whit
 expect 4 "a model without its materials" check models.whit
 check "is drawn with a warning, once" test "$(grep -c "^whit: warning: .*nowhere.mtl" stderr)" -eq 1

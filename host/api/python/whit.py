@@ -82,7 +82,7 @@ LoadParams = _struct(
 SceneInfo = _struct(
     "whit_scene_info",
     ("mesh_count instance_count node_count material_count texture_count light_count camera_count note_count"
-     " effect_count", c_uint32),
+     " effect_count textures_missing", c_uint32),
     ("mesh_triangle_count triangle_count sphere_count file_bytes hash", c_uint64), ("channel_count", c_uint32),
     ("time_end_s", c_double), ("one_tree", c_bool), ("lo hi objects_lo objects_hi", c_double * 3),
     ("environment", EnvironmentKind), ("environment_made_by_whit", c_bool), ("exposure_ev", c_double))

@@ -6,6 +6,7 @@
 #include "app/check/cause.h"
 #include "app/check/drawing_difference.h"
 #include "base/array.h"
+#include "base/file.h"
 #include "base/path.h"
 
 enum { WORDS_BYTES = 1024 };
@@ -27,9 +28,13 @@ whit_result base_open(struct base *base, const char *suite, const char *root, co
         base->folder = worktree_folder(&base->tree, folder);
         base->root = root ? worktree_folder(&base->tree, root) : NULL;
         base->path = base->folder ? string_format("%s%s", base->folder, path_name(suite)) : NULL;
-        if (!base->path || (root && !base->root) ||
-            !suite_read(&base->suite, base->path, base->root, NULL, say_wrong, base))
+        if (base->path && !file_exists(base->path)) {
+            cli_error("--base %s: it has no %s", cli_shown(revision), suite);
             result = WHIT_ERROR_INPUT;
+        } else if (!base->path || (root && !base->root) ||
+                   !suite_read(&base->suite, base->path, base->root, NULL, say_wrong, base)) {
+            result = WHIT_ERROR_INPUT;
+        }
     }
     free(folder);
     return result;

@@ -29,6 +29,8 @@ static const struct setting refused[] = {
     REFUSED("thumbnail", writes),
     REFUSED("stats", writes),
     REFUSED("counters", writes),
+    REFUSED("cameras", "makes several pictures: a case is one, with --camera"),
+    REFUSED("distances", writes),
     REFUSED("frames", "makes several pictures: a case is one, with --frame"),
     REFUSED("tile", a_part),
     REFUSED("samples-part", a_part),

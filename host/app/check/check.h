@@ -2,6 +2,9 @@
 #ifndef APP_CHECK_CHECK_H
 #define APP_CHECK_CHECK_H
 
+#include <stdio.h>
+#include <string.h>
+
 #include "app/arguments.h"
 #include "app/check/base.h"
 #include "app/check/verdict.h"
@@ -38,7 +41,15 @@ bool check_names_match(const struct check_names *names, const char *name);
 
 /* Where lines for people go: standard output, or standard error where a report goes to standard
    output. */
-FILE *check_lines(const struct check *check);
+static inline FILE *check_lines(const struct check *check)
+{
+    const char *const reports[] = {check->json, check->junit, check->report};
+    for (size_t i = 0; i < sizeof reports / sizeof *reports; ++i) {
+        if (reports[i] && strcmp(reports[i], "/dev/stdout") == 0)
+            return stderr;
+    }
+    return stdout;
+}
 
 /* accept_from.c: fills the results of the cases in `wanted` from the reports of
    --accept-from. False, with an error, where a report is damaged or does not fit the suite. */

@@ -1,5 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 
 #include "app/arguments.h"
@@ -96,16 +97,6 @@ static const struct setting options[] = {
     {0},
 };
 
-FILE *check_lines(const struct check *check)
-{
-    const char *const reports[] = {check->json, check->junit, check->report};
-    for (size_t i = 0; i < sizeof reports / sizeof *reports; ++i) {
-        if (reports[i] && strcmp(reports[i], "/dev/stdout") == 0)
-            return stderr;
-    }
-    return stdout;
-}
-
 bool check_names_match(const struct check_names *names, const char *name)
 {
     for (uint32_t i = 0; i < names->count; ++i) {
@@ -143,6 +134,12 @@ static bool check_golden(struct cli_reader *reader, const struct check *check)
     return !shared;
 }
 
+static bool is_folder(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
 static bool check_request(struct cli_reader *reader, struct check *check)
 {
     char why[SETTING_WHY_BYTES];
@@ -150,6 +147,8 @@ static bool check_request(struct cli_reader *reader, struct check *check)
         return cli_misuse(reader, "a suite is missing");
     if (check->accept_from && !check->accept.count)
         check->accept = (struct check_names){{"all"}, 1};
+    if (check->root && !is_folder(check->root))
+        return cli_misuse(reader, "--root %s: there is no such folder", check->root);
     if (reader->other_count && !check->accept.count)
         return cli_misuse(reader, "`%s` is one argument too many", reader->others[0]);
     for (uint32_t i = 0; i < reader->other_count; ++i) {
@@ -281,6 +280,21 @@ static whit_result explain(const struct check *check, struct studio *studio,
     return WHIT_OK;
 }
 
+/* Says in the result's text where the picture has textures that could not be read. */
+static whit_result tell_missing(const struct drawing *drawing, struct check_result *result)
+{
+    whit_scene_info info;
+    whit_scene_get_info(drawing->job.scene, &info);
+    if (info.textures_missing == 0)
+        return WHIT_OK;
+    char *text = string_format("%s; %u texture%s cannot be read and %s magenta", result->text,
+                               info.textures_missing, info.textures_missing == 1 ? "" : "s",
+                               info.textures_missing == 1 ? "is" : "are");
+    if (text)
+        verdict_set(result, result->verdict, text);
+    return text ? WHIT_OK : WHIT_ERROR_MEMORY;
+}
+
 static whit_result find_verdict(struct check *check, struct studio *studio,
                                 const struct drawing *drawing, struct check_result *result)
 {
@@ -299,7 +313,7 @@ static whit_result find_verdict(struct check *check, struct studio *studio,
         found = drawing_refuse(drawing, &refused);
     if (found == WHIT_OK && refused)
         verdict_add(result, CHECK_VACUOUS, string_format("refused as a golden: %s", refused));
-    return found;
+    return found == WHIT_OK ? tell_missing(drawing, result) : found;
 }
 
 /* Makes small pictures for --report and --thumbnails; for a case that differs, also of the old

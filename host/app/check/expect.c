@@ -33,10 +33,13 @@ static const char *skip(const char *at)
 /* Reads the (X,Y) of pixel(X,Y) and advances `at`. */
 static bool read_place(const char **at, struct check_expectation *one, char *why)
 {
+    char x[10], y[10];
     int length = -1;
-    (void)sscanf(*at, "( %9u , %9u )%n", &one->x, &one->y, &length);
+    (void)sscanf(*at, "( %9[0-9] , %9[0-9] )%n", x, y, &length);
     if (length < 0)
-        return setting_refuse(why, "pixel(X,Y) with two whole numbers is needed");
+        return setting_refuse(why, "pixel(X,Y) with two whole numbers from 0 on is needed");
+    one->x = (uint32_t)strtoul(x, NULL, 10);
+    one->y = (uint32_t)strtoul(y, NULL, 10);
     *at += length;
     return true;
 }

@@ -54,6 +54,15 @@ static void put_pictures(const struct check *check, json_t **objects, size_t lef
     }
 }
 
+/* Removes what the page does not show. */
+static void drop_keys(json_t *object, bool is_shown_whole)
+{
+    static const char *const keys[] = {"golden", "is", "command", "was", "changed", "cause"};
+    enum { NEVER_SHOWN = 2 }; /* the first ones; the others only for cases that are not fine */
+    for (size_t i = 0; i < (is_shown_whole ? NEVER_SHOWN : sizeof keys / sizeof *keys); ++i)
+        json_object_del(object, keys[i]);
+}
+
 /* Finds the JSON object of each case of the suite; NULL: the case was not run. */
 static void find_objects(const struct check *check, json_t *cases, json_t **objects)
 {
@@ -61,7 +70,7 @@ static void find_objects(const struct check *check, json_t *cases, json_t **obje
     for (uint32_t i = 0; i < check->suite.count; ++i) {
         bool run = check->results[i].verdict != CHECK_NOT_RUN;
         objects[i] = run ? json_array_get(cases, at++) : NULL;
-        json_object_del(objects[i], "golden");
+        drop_keys(objects[i], is_wrong(&check->results[i]));
     }
 }
 

@@ -280,6 +280,12 @@ static bool begin_roots(struct suite *suite, const char *root)
     return known;
 }
 
+/* Whether cases were refused because there is no room for more: more need not be told. */
+static bool is_too_long(const struct suite *suite)
+{
+    return suite->count == CHECK_CASES_MAX && suite->wrong;
+}
+
 bool suite_read(struct suite *suite, const char *path, const char *root, suite_needs *needs,
                 void (*say)(void *user, const char *text), void *user)
 {
@@ -293,7 +299,7 @@ bool suite_read(struct suite *suite, const char *path, const char *root, suite_n
     bool whole = begin_roots(suite, root) || refuse(&line, "out of memory");
     if (whole && strlen((const char *)data) != size_bytes)
         whole = refuse(&line, "not a suite: it has bytes that are 0");
-    for (char *text = (char *)data, *end; whole && text; text = end) {
+    for (char *text = (char *)data, *end; whole && text && !is_too_long(suite); text = end) {
         end = strchr(text, '\n');
         if (end)
             *end++ = '\0';
