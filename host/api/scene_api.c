@@ -199,6 +199,7 @@ void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera
         .height = orthographic ? (double)camera->height : 0.0,
         .lens_radius = (double)camera->lens_radius,
         .focus_distance = (double)camera->focus_distance,
+        .target_is_direction = camera->target_is_direction,
         .made_by_whit = camera->made_by_whit,
     };
     copy3_double(info->eye, camera->eye);

@@ -265,7 +265,8 @@ static whit_result add_camera(struct gltf *gltf, const json_t *node, const struc
         return WHIT_ERROR_INPUT;
     if (index == SCENE_NONE || !gltf->request->with_cameras)
         return WHIT_OK;
-    struct scene_camera camera = {.node = scene_node, .target = {0, 0, -1}, .up = {0, 1, 0}};
+    struct scene_camera camera = {
+        .node = scene_node, .target = {0, 0, -1}, .up = {0, 1, 0}, .target_is_direction = true};
     if (!gltf_item(gltf, "cameras", index, &place, &object) ||
         !gltf_string(gltf, object, &place, "name", &name) ||
         !read_lens(gltf, object, &place, &camera))

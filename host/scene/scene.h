@@ -211,11 +211,12 @@ struct scene_camera {
     whit_camera_kind kind;
     uint32_t node;
     double eye[3], target[3], up[3];
-    float fov_y;          /* PERSPECTIVE: full vertical angle */
-    float height;         /* ORTHOGRAPHIC: full height of the picture, world units */
-    float lens_radius;    /* PERSPECTIVE: radius of a thin lens, world units; 0: pinhole */
-    float focus_distance; /* along the view, world units; 0: the distance of `target` */
-    float aspect;         /* width / height the file asks for; 0: any */
+    float fov_y;              /* PERSPECTIVE: full vertical angle */
+    float height;             /* ORTHOGRAPHIC: full height of the picture, world units */
+    float lens_radius;        /* PERSPECTIVE: radius of a thin lens, world units; 0: pinhole */
+    float focus_distance;     /* along the view, world units; 0: the distance of `target` */
+    float aspect;             /* width / height the file asks for; 0: any */
+    bool target_is_direction; /* the file says where the camera looks, but not how far */
     bool made_by_whit;
 };
 

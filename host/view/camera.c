@@ -117,6 +117,21 @@ void camera_focus(struct view_camera *camera, const double point[3])
     }
 }
 
+void camera_reach(struct view_camera *camera, const double lo[3], const double hi[3])
+{
+    struct frame f = frame_of(camera);
+    double along = 0.0, size = 0.0;
+    if (!(lo[0] <= hi[0] && lo[1] <= hi[1] && lo[2] <= hi[2]))
+        return;
+    for (int i = 0; i < 3; ++i) {
+        along += f.forward[i] * (0.5 * (lo[i] + hi[i]) - camera->eye[i]);
+        size = fmax(size, hi[i] - lo[i]);
+    }
+    double distance = fmax(along, 0.25 * size);
+    for (int i = 0; distance > 0.0 && isfinite(distance) && i < 3; ++i)
+        camera->target[i] = camera->eye[i] + distance * f.forward[i];
+}
+
 /* The distance at which a ball just fits into the picture. */
 static double distance_for(const struct view_camera *camera, double radius, double aspect)
 {

@@ -11,6 +11,10 @@ struct view_camera {
     double fov_y_degrees;
 };
 
+/* Moves the target along the view to where the middle of these bounds lies beside it; at least a
+   quarter of their longest side away, for a camera among or behind the objects. The picture stays
+   as it is. */
+void camera_reach(struct view_camera *camera, const double lo[3], const double hi[3]);
 /* Moves the camera, in its direction, so that it looks at the middle of the box and has all of it
    in the picture. An empty box counts as one around the origin. */
 void camera_show(struct view_camera *camera, const double lo[3], const double hi[3], double aspect);

@@ -57,6 +57,7 @@ void engine_compare(const struct engine_kept *before, const struct engine_frame 
         .difference = difference,
         .before_ms = engine_drawn_ms(&before->stats),
         .after_ms = engine_drawn_ms(&after->stats),
+        .has_colors = colors,
         .over = !colors, /* costs and pictures are painted by different kernels */
     };
     memcpy(change->what, what, sizeof what);

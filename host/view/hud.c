@@ -227,7 +227,7 @@ static void draw_change(const struct view *view)
     }
     draw_change_ms(c);
     if (c->difference.other_ids == 0 && c->difference.other_colors == 0) {
-        ui_text_color(UI_COLOR_GOOD, "same picture");
+        ui_text_color(UI_COLOR_GOOD, c->has_colors ? "same picture" : "same hits");
         return;
     }
     ui_text_color(c->difference.other_ids ? UI_COLOR_WARNING : UI_COLOR_GOOD,
@@ -238,7 +238,7 @@ static void draw_change(const struct view *view)
         ui_text("%llu colours, linear RGB by at most %.3g, on average %.2g",
                 (unsigned long long)c->difference.other_colors, c->difference.largest,
                 c->difference.mean);
-    else
+    else if (c->has_colors)
         ui_text("0 colours");
 }
 

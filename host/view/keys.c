@@ -5,10 +5,12 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/input.h"
 #include "view/choices.h"
 #include "view/keys.h"
 #include "view/pick.h"
 #include "view/price_panel.h"
+#include "view/scene_folder.h"
 #include "view/scenes.h"
 #include "view/view_private.h"
 
@@ -270,13 +272,12 @@ static void say_speed(const struct view *view, char *text, size_t bytes)
 
 static void turn_scene(struct view *view, int by)
 {
-    uint32_t count = view->params->scene_count;
-    if (count == 0) {
+    char path[SETTING_PATH_BYTES];
+    if (!is_input(view->settings.scene) &&
+        scene_folder_find(view->settings.scene, by, path, sizeof path))
+        view_open(view, path);
+    else
         view_say(view, "no other scene beside this one");
-        return;
-    }
-    view->scene_index = (view->scene_index + count + (uint32_t)by) % count;
-    view_open(view, view->params->scenes[view->scene_index]);
 }
 
 static void say_scene(const struct view *view, char *text, size_t bytes)

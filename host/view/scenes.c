@@ -24,10 +24,12 @@ static void read_camera(struct view *view, uint32_t index)
     memcpy(view->camera.eye, info.eye, sizeof info.eye);
     memcpy(view->camera.target, info.target, sizeof info.target);
     memcpy(view->camera.up, info.up, sizeof info.up);
+    if (info.target_is_direction)
+        camera_reach(&view->camera, view->scene->info.objects_lo, view->scene->info.objects_hi);
     if (!(info.fov_y_degrees > 0.0)) { /* orthographic or panorama: it has no angle */
         double distance = 0.0;
         for (int i = 0; i < 3; ++i)
-            distance += (info.target[i] - info.eye[i]) * (info.target[i] - info.eye[i]);
+            distance += pow(view->camera.target[i] - view->camera.eye[i], 2.0);
         distance = sqrt(distance);
         view->camera.fov_y_degrees =
             info.height > 0.0 && distance > 0.0
@@ -257,11 +259,6 @@ void scenes_show(struct view *view)
 
 void scenes_begin(struct view *view)
 {
-    const struct view_params *params = view->params;
-    for (uint32_t i = 0; i < params->scene_count; ++i) {
-        if (strcmp(params->scenes[i], params->settings.scene) == 0)
-            view->scene_index = i;
-    }
     view->watch = watch_create(window_wake);
     view->watch_asked = watch_create(window_wake);
     recall_camera(view);

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/path.h"
 #include "view/choices.h"
 #include "view/view_private.h"
@@ -18,6 +19,10 @@ bool skies_drop(struct view *view, const char *path)
     struct settings *settings = &view->settings;
     if (!is_radiance(path))
         return false;
+    if (!file_exists(path)) {
+        view_say(view, "%s: there is no such file", path_name(path));
+        return true;
+    }
     if (!setting_read(settings_row("environment"), path, settings, why)) {
         view_say(view, "environment%s", why);
         return true;

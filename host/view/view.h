@@ -30,9 +30,6 @@ struct view_params {
     const char *replay; /* file to read events from, or NULL */
     const char *hint;   /* message to begin with, or NULL */
     bool remember;      /* remember cameras from one run to the next */
-    /* Scenes that the arrow keys go through, borrowed; settings.scene need not be one of them. */
-    const char *const *scenes;
-    uint32_t scene_count;
     const volatile bool *cancel;
     /* Saves a picture; logs the reason of an error. */
     whit_result (*save)(void *user, const struct view_shot *shot, const char *path);

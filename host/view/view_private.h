@@ -56,7 +56,6 @@ struct view {
     struct view_camera camera; /* settings.camera as numbers */
     bool camera_known;         /* false: the scene's camera was not read yet */
     int file_camera;           /* index of the scene's camera; -1: moved by hand */
-    uint32_t scene_index;      /* index of the scene in params->scenes */
 
     struct engine_frame frame;
     struct engine_status status;

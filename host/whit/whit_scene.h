@@ -162,6 +162,8 @@ typedef struct whit_camera_info {
     double fov_y_degrees, height;
     double lens_radius, focus_distance; /* world units. lens_radius 0: a pinhole; focus_distance 0:
                                            that of the target */
+    bool target_is_direction; /* the file says where the camera looks, but not how far: the target
+                                 is at any distance */
     bool made_by_whit;
 } whit_camera_info;
 typedef struct whit_instance_info {

@@ -35,6 +35,8 @@ stepped: press Period
 plays! press Space, drop $OUT/nowhere.json, until error | playing = true
 stood: press Space | frame.pixels as stepped | render as stepped | frame.pixels not as back
 dropped: drop $SCENES/cube.json | scene = $SCENES/cube.json | frame.ids as a
+beside: press Left | scene = $SCENES/balls.json | frame.ids not as a
+again: press Right | scene = $SCENES/cube.json | frame.ids as a
 large! drop $SCENES/atrium.json, until error | scene = $SCENES/cube.json | error has (--memory-limit)
 nowhere: drop $OUT/nowhere.obj | frame.ids as dropped | render as dropped | error has nowhere.obj
 edges: drop edges.view | frame.ids as nowhere | frame.pixels not as nowhere | render has --edges triangles

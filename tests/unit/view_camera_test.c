@@ -132,6 +132,21 @@ TEST(text_goes_there_and_back)
         assert_false(camera_from_text(wrong[i], &back));
 }
 
+/* The point around which a camera orbits whose file says only where it looks. */
+TEST(target_is_beside_the_middle_of_what_there_is)
+{
+    struct view_camera c = front();
+    const double lo[3] = {1, -1, -22}, hi[3] = {3, 1, -18}, around_lo[3] = {-2, -2, 3},
+                 around_hi[3] = {2, 2, 7};
+    camera_reach(&c, lo, hi); /* looks along -z from z 5 */
+    assert_near(c.target[0], 0.0);
+    assert_near(c.target[2], -20.0);
+    camera_reach(&c, around_lo, around_hi);
+    assert_near(c.target[2], 4.0);
+    camera_reach(&c, around_hi, around_lo); /* an empty scene */
+    assert_near(c.target[2], 4.0);
+}
+
 TEST(lines_are_cut_at_the_eye)
 {
     struct view_camera c = front();

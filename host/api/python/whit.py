@@ -89,7 +89,8 @@ SceneInfo = _struct(
 InstanceInfo = _struct("whit_instance_info", ("name", c_char_p), ("mesh", c_uint32),
                        ("object_to_world", c_double * 12))
 CameraInfo = _struct("whit_camera_info", ("name", c_char_p), ("kind", CameraKind), ("eye target up", c_double * 3),
-                     ("fov_y_degrees height lens_radius focus_distance", c_double), ("made_by_whit", c_bool))
+                     ("fov_y_degrees height lens_radius focus_distance", c_double),
+                     ("target_is_direction made_by_whit", c_bool))
 DeviceParams = _struct("whit_device_params", ("selector", c_char_p), ("validation", c_bool))
 DeviceInfo = _struct(
     "whit_device_info", ("index", c_uint32), ("name driver", c_char * 256), ("api_version", c_char * 32),

@@ -1,5 +1,4 @@
 /* `whit view`: takes the options of `whit render` and opens a window. */
-#include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -116,64 +115,7 @@ static whit_result save_shot(void *user, const struct view_shot *shot, const cha
     return result;
 }
 
-/* ---- Scenes ---- */
-
-enum { SCENES_MAX = 512 };
-
-struct scene_list {
-    char *paths[SCENES_MAX];
-    uint32_t count;
-};
-
-static bool is_scene(const char *name)
-{
-    static const char *const endings[] = {".json", ".obj", ".gltf", ".glb", ".ply",
-                                          ".stl",  ".fbx", ".dae",  ".3mf", ".off"};
-    size_t length = strlen(name);
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; ++i) {
-        size_t end = strlen(endings[i]);
-        if (length > end && strcmp(name + length - end, endings[i]) == 0)
-            return name[0] != '.';
-    }
-    return false;
-}
-
-static int compare_paths(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-/* Scenes and models in a folder, by name. */
-static void list_folder(struct scene_list *list, const char *folder)
-{
-    DIR *dir = opendir(folder[0] ? folder : ".");
-    struct dirent *entry;
-    while (dir && (entry = readdir(dir)) != NULL && list->count < SCENES_MAX) {
-        size_t bytes = strlen(folder) + strlen(entry->d_name) + 1;
-        char *path = is_scene(entry->d_name) ? malloc(bytes) : NULL;
-        if (!path)
-            continue;
-        snprintf(path, bytes, "%s%s", folder, entry->d_name);
-        list->paths[list->count++] = path;
-    }
-    if (dir)
-        closedir(dir);
-    qsort(list->paths, list->count, sizeof *list->paths, compare_paths);
-}
-
-static void list_beside(struct scene_list *list, const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    char folder[SETTING_PATH_BYTES];
-    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 0, path);
-    list_folder(list, folder);
-}
-
-static void list_finish(struct scene_list *list)
-{
-    for (uint32_t i = 0; i < list->count; ++i)
-        free(list->paths[i]);
-}
+/* ---- The command ---- */
 
 /* Finds the scene that opens when none is given: installed beside the program, or in the source
    folder that it was built from. */
@@ -196,12 +138,9 @@ static const char *find_start(char *path, size_t bytes)
     return access(path, R_OK) == 0 ? path : NULL;
 }
 
-/* ---- The command ---- */
-
 static int work(struct job *job, struct view_params *view)
 {
     char *scene = job->settings.scene;
-    struct scene_list scenes = {0};
     uint32_t validation = 0;
     if (!scene[0]) {
         if (!find_start(scene, sizeof job->settings.scene)) {
@@ -211,10 +150,6 @@ static int work(struct job *job, struct view_params *view)
         view->hint = start_hint;
     }
     view->settings = job->settings;
-    if (!is_input(scene))
-        list_beside(&scenes, scene);
-    view->scenes = (const char *const *)scenes.paths;
-    view->scene_count = scenes.count;
     view->cancel = &cli_cancel;
     view->save = save_shot;
     view->load_state = load_state;
@@ -231,7 +166,6 @@ static int work(struct job *job, struct view_params *view)
         view->compiler = job->compiler;
     }
     whit_result result = view_run(view, &cli_log_notes, &validation);
-    list_finish(&scenes);
     if (result == WHIT_OK && cli_cancel)
         result = WHIT_ERROR_CANCELLED;
     if (result != WHIT_OK)
