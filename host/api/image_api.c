@@ -238,12 +238,15 @@ whit_result whit_image_heat(const whit_image *values, const whit_heat_params *pa
 }
 
 static whit_result compare_by_flip(const whit_image *a, const whit_image *b,
-                                   const whit_compare_params *params, whit_difference *out,
-                                   whit_image **flip_map)
+                                   const whit_compare_params *params, const whit_log *log,
+                                   whit_difference *out, whit_image **flip_map)
 {
     struct flip_summary flip;
     struct image map = {0};
     whit_result result = image_flip(&a->image, &b->image, params->pixels_per_degree, &map, &flip);
+    if (result == WHIT_ERROR_USAGE)
+        log_error(log, "%g pixels a degree: must be 1 to %d", params->pixels_per_degree,
+                  FLIP_PIXELS_PER_DEGREE_MAX);
     out->flip_mean = flip.mean;
     out->flip_largest = flip.largest;
     if (flip_map)
@@ -266,7 +269,7 @@ whit_result whit_image_compare(const whit_image *a, const whit_image *b,
         return result;
     if (params->no_flip || !a->image.pixels)
         return WHIT_OK;
-    return compare_by_flip(a, b, params, out, flip_map);
+    return compare_by_flip(a, b, params, log, out, flip_map);
 }
 
 whit_result whit_image_subtract(const whit_image *a, const whit_image *b, const whit_log *log,

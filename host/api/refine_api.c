@@ -39,6 +39,9 @@ static const double BAILOUT_ALL = 16.0;
 whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_params *params,
                                whit_refine **out)
 {
+    const whit_renderer_params defaults = whit_renderer_defaults();
+    if (!params)
+        params = &defaults;
     *out = NULL;
     whit_result result = api_need_device(renderer);
     if (result != WHIT_OK)

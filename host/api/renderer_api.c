@@ -6,6 +6,7 @@
 #include "api/handles.h"
 #include "base/threads.h"
 #include "image/edges.h"
+#include "picture/params.h"
 #include "scene/effects.h"
 #include "scene/pose.h"
 #include "twin/traverse.h"
@@ -83,9 +84,11 @@ whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
     renderer->log = log;
     renderer->accel = accel->accel;
     renderer->params = *params;
-    whit_result result =
-        device ? renderer_create(&log, device->device, accel->accel, params, &renderer->renderer)
-               : pose_on_cpu(accel->accel, params->time_s);
+    whit_result result = WHIT_OK;
+    if (device)
+        result = renderer_create(&log, device->device, accel->accel, params, &renderer->renderer);
+    else if ((result = params_check(&log, &renderer->params)) == WHIT_OK)
+        result = pose_on_cpu(accel->accel, params->time_s);
     if (result != WHIT_OK) {
         whit_renderer_destroy(renderer);
         return result;
@@ -140,6 +143,9 @@ static void take_params(whit_renderer *renderer, const whit_renderer_params *par
 
 whit_result whit_renderer_set_view(whit_renderer *renderer, const whit_renderer_params *params)
 {
+    const whit_renderer_params defaults = whit_renderer_defaults();
+    if (!params)
+        params = &defaults;
     whit_result result = api_need_device(renderer);
     if (result == WHIT_OK)
         result = renderer_set_view(renderer->renderer, params);
@@ -150,6 +156,9 @@ whit_result whit_renderer_set_view(whit_renderer *renderer, const whit_renderer_
 
 whit_result whit_renderer_set_shader(whit_renderer *renderer, const whit_renderer_params *params)
 {
+    const whit_renderer_params defaults = whit_renderer_defaults();
+    if (!params)
+        params = &defaults;
     whit_result result = api_need_device(renderer);
     if (result == WHIT_OK && !renderer_takes_shader(renderer->renderer, params->shader)) {
         log_error(&renderer->log, "a shader of other functions needs a renderer of its own");
@@ -208,6 +217,10 @@ static whit_result make_image(whit_renderer *renderer, whit_aov aov, bool borrow
 {
     *out = NULL;
     whit_result result = api_need_device(renderer);
+    if (result == WHIT_OK && aov > WHIT_AOV_DISTANCES && aov < WHIT_AOV_SHADER) {
+        log_error(&renderer->log, "there is no aov %u", (unsigned)aov);
+        result = WHIT_ERROR_USAGE;
+    }
     if (result != WHIT_OK)
         return result;
     struct image image = {0};

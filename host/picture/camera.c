@@ -162,11 +162,16 @@ whit_result camera_frame(const whit_log *log, const struct scene_pose *pose,
     if (!make_basis(&camera, forward, right, up))
         return refuse(log, &camera, "eye and target are the same point or not finite");
     if (!(half > 0.0) || !isfinite(half))
-        return refuse(log, &camera, "the field of view is not between 0 and 180 degrees");
+        return refuse(log, &camera,
+                      camera.kind == WHIT_CAMERA_ORTHOGRAPHIC
+                          ? "the height of the picture is not above 0"
+                          : "the field of view is not between 0 and 180 degrees");
     *kind = kind_code(&camera);
     double focus = focus_distance(&camera);
-    if (*kind == CAMERA_LENS && !(isfinite(focus) && isfinite(camera.lens_radius)))
-        return refuse(log, &camera, "the lens or its focus is not finite");
+    bool has_lens = isfinite(focus) && isfinite(camera.lens_radius) && camera.lens_radius >= 0.0f &&
+                    camera.focus_distance >= 0.0f;
+    if (camera.kind == WHIT_CAMERA_PERSPECTIVE && !has_lens)
+        return refuse(log, &camera, "the lens or its focus is below 0 or not finite");
     double aspect = *kind == CAMERA_PANORAMA ? 1.0 : (double)width / (double)height;
     scale_to_float(camera.eye, 1.0, frame->eye);
     scale_to_float(forward, 1.0, frame->forward);

@@ -1,5 +1,7 @@
 #include "picture/params.h"
 
+#include <math.h>
+
 #include "abi/bvh.h"
 #include "abi/spec.h"
 
@@ -72,6 +74,13 @@ whit_result params_check(const whit_log *log, whit_renderer_params *params)
     if (params->width == 0 || params->height == 0 || params->width > 65535 ||
         params->height > 65535) {
         log_error(log, "size %ux%u: both sides must be 1..65535", params->width, params->height);
+        return WHIT_ERROR_USAGE;
+    }
+    if (!isfinite(params->time_s) || !(params->bailout >= 0.0) || !isfinite(params->bailout)) {
+        log_error(log,
+                  "a time of %g s and a bail-out of %g: must be finite, and the latter not "
+                  "below 0",
+                  params->time_s, params->bailout);
         return WHIT_ERROR_USAGE;
     }
     if (!is_known(params)) {

@@ -238,6 +238,13 @@ static whit_result read_data(struct renderer *renderer, enum plane_name name, st
 
 whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
 {
+    if (renderer->params.sampling.first) {
+        log_error(&renderer->log,
+                  "hit identities are those of the first sample, which samples "
+                  "from %u on do not have",
+                  renderer->params.sampling.first);
+        return WHIT_ERROR_USAGE;
+    }
     return read_data(renderer, PLANE_IDS, out);
 }
 

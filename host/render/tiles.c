@@ -121,8 +121,8 @@ whit_result render_stop_asked(const struct renderer *renderer, const struct prog
         return WHIT_ERROR_CANCELLED;
     if (params->time_limit_s > 0.0 &&
         clock_ms() - renderer->create_ms > params->time_limit_s * 1e3) {
-        log_error(&renderer->log, "time limit of %g s passed with %.0f %% of the picture done",
-                  params->time_limit_s, 100.0 * picture_share(progress));
+        log_error(&renderer->log, "the time limit passed with %.0f %% of the picture done",
+                  100.0 * picture_share(progress));
         return WHIT_ERROR_TIME_LIMIT;
     }
     return WHIT_OK;

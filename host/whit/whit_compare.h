@@ -14,8 +14,8 @@ extern "C" {
 typedef struct whit_difference {
     uint64_t pixel_count;
     uint64_t differing_pixels; /* pixels in which any bit differs, alpha included */
-    uint64_t over_1_255;       /* pixels with a channel more than 1/255 apart as displayed (8-bit
-                                  sRGB) */
+    uint64_t over_1_255;       /* pixels with a channel, alpha included, more than 1/255 apart as
+                                  displayed (8-bit sRGB) */
     uint64_t nonfinite_a, nonfinite_b; /* pixels that are not finite; rmse, relative_mse, largest
                                           and mean leave them out */
     uint64_t nonfinite_differing;      /* those of differing_pixels that are not finite in one image

@@ -27,8 +27,8 @@ void whit_reference_destroy(whit_reference *reference);
 WHIT_CHECK whit_result whit_reference_render(whit_reference *reference, whit_image **color,
                                              whit_image **ids);
 /* Gives the statistics of the picture rendered last: rays by kind, rays cut, render_ms and
-   mrays_per_s. Figures that only a device has are 0; weights and bounds are unknown and therefore
-   below 0. */
+   mrays_per_s. Counts that only a device has are 0; its times, weights and bounds are unknown and
+   therefore below 0. */
 void whit_reference_get_stats(const whit_reference *reference, whit_stats *stats);
 
 /* The rays of one sample (0: the first) of pixel (x, y), counted from the upper left, each after

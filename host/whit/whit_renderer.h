@@ -75,7 +75,7 @@ typedef struct whit_step {
 
 /* Start from whit_renderer_defaults(): a zeroed struct asks for no bounces and a bail-out of 0. */
 typedef struct whit_renderer_params {
-    uint32_t width, height; /* pixels; 0: 640 x 480 */
+    uint32_t width, height; /* pixels, 1..65535; both 0: 640 x 480 */
     /* Draws only some rows of the picture, and its images have only these: `row_count` rows from
        `first_row` on; 0: all. They begin at a multiple of 8, and end at a multiple of 8 or at the
        picture's last row. This needs a fixed number of samples, and `count` false. */
@@ -83,7 +83,7 @@ typedef struct whit_renderer_params {
     whit_camera camera; /* its name is borrowed by renderers */
     double time_s;      /* of the animation */
     whit_sampling sampling;
-    uint32_t depth; /* most bounces; 0: only camera rays and their shadow rays */
+    uint32_t depth; /* most bounces, 0..255; 0: only camera rays and their shadow rays */
     double bailout; /* rays that can add less than this to a pixel are not traced, nor are shadow
                        rays that can add at most this * 2^-14 of the light that their light sends;
                        0: all rays are traced */
@@ -126,7 +126,7 @@ typedef struct whit_renderer_params {
        the picture's time. */
     bool time_stages;
     /* Keeps colours alone, which takes less memory, and on a CPU less time: WHIT_AOV_IDS and
-       WHIT_AOV_CUTS give WHIT_ERROR_USAGE, and so do edges of whit_renderer_draw_over. */
+       WHIT_AOV_CUTS give WHIT_ERROR_USAGE. */
     bool color_only;
     uint32_t tile_size; /* pixels on a side, 16..1024; 0: chosen by measured time */
     const volatile bool *cancel;
@@ -160,16 +160,17 @@ typedef struct whit_renderer_params {
                             call; NULL or "": the values of the file */
     bool skip_sliders;   /* entries of `sliders` that the shader does not have are ignored, not
                             refused */
-    uint32_t trace_rays; /* most rays per call of whit_trace, which keeps buffers small; 0: any
-                            number */
+    uint32_t trace_rays; /* rays that whit_trace has on the device at a time; 0: chosen by whit. A
+                            smaller number takes smaller buffers */
 } whit_renderer_params;
 
 /* 640 x 480, one sample, 16 samples of an area light, depth 8, bailout WHIT_BAILOUT_DEFAULT, the
    rest zero. Calls use these where their params are NULL. */
 whit_renderer_params whit_renderer_defaults(void);
 
-/* `device` may be NULL: then only whit_trace on the CPU works. WHIT_ERROR_USAGE for params out of
-   range, a camera that does not exist, or a scene whose pictures were dropped; WHIT_ERROR_INPUT for
+/* `device` may be NULL: then only whit_trace on the CPU works, and the camera is not looked for.
+   WHIT_ERROR_USAGE for params out of range, a camera that does not exist, or a scene whose pictures
+   were dropped; WHIT_ERROR_INPUT for
    a scene that has no finite pose at that time; WHIT_ERROR_STATUS for a camera in too many media;
    WHIT_ERROR_DEVICE, also where a kernel cannot be made. */
 WHIT_CHECK whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
@@ -204,8 +205,9 @@ WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double ti
 /* Prepares another picture of the same scene with the same kernels. Of `params` it takes width,
    height, camera, time_s, sampling, light_samples, bailout, depth, exposure_ev, soft_highlights,
    time_stages and sliders, and nothing else; the camera's name is borrowed until the next call. The
-   picture is that of a renderer made with these params, byte for byte. After an error nothing can
-   be rendered until a call succeeds. WHIT_ERROR_USAGE and others as of whit_renderer_create. */
+   picture is that of a renderer made with these params, byte for byte. After an error the renderer
+   may have no picture, and whit_renderer_render gives WHIT_ERROR_USAGE until a call succeeds.
+   WHIT_ERROR_USAGE and others as of whit_renderer_create. */
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
                                               const whit_renderer_params *params);
 
@@ -221,7 +223,8 @@ WHIT_CHECK whit_result whit_renderer_set_shader(whit_renderer *renderer,
 /* The name of an effect by index, in the order of whit_scene_get_effect; NULL past the last. */
 const char *whit_effect_name(uint32_t index);
 /* Whether whit_renderer_params.effects_added or effects_removed may have the effect: effects that
-   geometry or camera decide cannot be switched, except that a lens can be removed. */
+   geometry or camera decide cannot be switched, except that a lens can be removed, and code for
+   spheres added. */
 bool whit_effect_can_add(uint32_t index);
 bool whit_effect_can_remove(uint32_t index);
 /* Whether a renderer's kernels contain the effect. */
@@ -242,9 +245,9 @@ typedef enum whit_aov {
                              samples of the function's value for what the camera ray hits, 0 for a
                              miss */
 } whit_aov;
-/* WHIT_ERROR_USAGE where nothing was rendered, for aovs that the shader does not have, for cuts of
-   a picture with adaptive samples, and for distances unless whit_renderer_render_views drew the
-   picture; WHIT_ERROR_DEVICE. */
+/* WHIT_ERROR_USAGE where nothing was rendered, for aovs that the shader does not have, for ids
+   where sampling.first leaves the first sample out, for cuts of a picture with adaptive samples,
+   and for distances unless whit_renderer_render_views drew the picture; WHIT_ERROR_DEVICE. */
 WHIT_CHECK whit_result whit_renderer_image(whit_renderer *renderer, whit_aov aov, whit_image **out);
 /* Makes an image of colours displayed (.png, FLIP) with exposure_ev and soft_highlights of
    `params`. Images from renderers and references have those of their params already. */
@@ -324,10 +327,10 @@ typedef struct whit_stats {
     uint64_t rays_cut_depth, rays_cut_bailout;
     double weight_cut_depth, weight_cut_bailout;
     /* Upper bound of the error of any pixel channel due to rays and shadow rays that bailout left
-       out; < 0: not known. */
+       out, for a bailout of up to 1; < 0: not known. */
     double bailout_bound;
     uint64_t pixels_by_samples[WHIT_SAMPLE_LEVELS];
-    uint32_t kernel_instructions; /* SPIR-V, of its functions; see whit_renderer_get_kernel */
+    uint32_t kernel_instructions; /* SPIR-V, of all functions of its kernels */
     uint32_t kernels_beside; /* how many of these kernels a second device translated to machine code
                                 in parallel */
     bool general;            /* drawn by the general kernel: see params.compile_async */
@@ -382,7 +385,7 @@ typedef enum whit_trace_on {
    a meaning). Rays that are not finite miss. Cut-outs count as solid. `cost`: gets the cost of all
    rays together, or NULL (on the device it needs params.count). WHIT_ERROR_STATUS where the hits
    cannot be trusted, WHIT_ERROR_USAGE for what the renderer was not made for (no device, `count`
-   false, more than trace_rays), WHIT_ERROR_CANCELLED; WHIT_ERROR_DEVICE on the device. */
+   false), WHIT_ERROR_CANCELLED; WHIT_ERROR_DEVICE on the device. */
 WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
                                   uint64_t count, bool any, whit_hit *hits, whit_cost *cost);
 /* Device time in ms of the traversals of the last whit_trace on the device, without transfers; < 0:

@@ -107,9 +107,9 @@ typedef struct whit_scene_info {
 } whit_scene_info;
 void whit_scene_get_info(const whit_scene *scene, whit_scene_info *info);
 
-/* The functions whit_scene_get_* below describe item `index` of a kind; the info is zeroed when
-   there is no such item. Strings live as long as the scene; names and notes are as the files have
-   them, so show them by whit_text_show. */
+/* The functions whit_scene_get_* below describe item `index` of a kind; where there is no such
+   item, numbers are 0 and strings "". Strings live as long as the scene; names and notes are as the
+   files have them, so show them by whit_text_show. */
 typedef struct whit_mesh_info {
     const char *name;
     uint32_t vertex_count, triangle_count, group_count, sphere_count;

@@ -180,11 +180,11 @@ const struct cli_command command_hard = {
         "scaled, moved, turned and mirrored, as vertices (rounded to float: another mesh) and as\n"
         "instances. Misses at outlines and beside open edges are no leaks. Columns, all against "
         "exact arithmetic: misses of\n"
-        "rays that hit; leaks, those that got out of a closed surface; false hits; wrong\n"
-        "primitives; sure, errors beyond the bound of floats; double hits where exactly there is\n"
+        "rays that hit; leaks, those that got out of a closed surface; false hits; other\n"
+        "primitives; wrong, errors beyond the bound of floats; double hits where exactly there is\n"
         "one; hits on the surface that a ray left; the largest error of t, in floats; rays whose\n"
         "hits differ by a bit between the device and its twin on the CPU. Exit code 1 when a\n"
-        "promise of a level is broken: no leaks and no sure errors (watertight), every hit exact\n"
+        "promise of a level is broken: no leaks and nothing wrong (watertight), every hit exact\n"
         "(exact), equal bits (both); fast promises nothing.\n",
     .options = options,
     .settings = IN_HARD,

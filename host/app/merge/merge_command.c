@@ -110,7 +110,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
 const struct cli_command command_merge = {
     .name = "merge",
     .arguments = "PART... -o FILE [options]",
-    .summary = "Puts parts of a picture together, to the bytes of one run.",
+    .summary = "Puts parts of a picture together, to the pixels of one run.",
     .details =
         "PART are the files of `whit render --tile` and `--samples-part`, in any order, or those\n"
         "of their --ids. All parts of one picture have to be there, each once. Memory is that of\n"
