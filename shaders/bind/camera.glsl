@@ -49,6 +49,15 @@ vec2 mirror_sample(vec2 xy, uvec2 pixel)
 }
 
 #ifdef HOOKS
+// Scales a direction whose square would be 0 or overflow by a power of 2.
+vec3 moderate(vec3 dir)
+{
+    float size = max(abs(dir.x), max(abs(dir.y), abs(dir.z)));
+    int exponent = int(floatBitsToUint(size) >> 23); // 127 above the power of 2
+    bool extreme = exponent < 127 - 32 || exponent > 127 + 32;
+    return extreme ? dir * uintBitsToFloat(uint(max(254 - exponent, 1)) << 23) : dir;
+}
+
 // Calls the user's camera().
 void aim_camera(uvec2 pixel, vec2 at, inout vec3 origin, inout vec3 dir);
 #endif
@@ -66,6 +75,8 @@ Ray camera_ray(uvec2 pixel)
 #ifdef HOOKS
     if ((SPEC_HOOKS & HOOK_CAMERA) != 0u)
         aim_camera(pixel, at, origin, dir);
+    if ((SPEC_HOOKS & HOOK_CAMERA) != 0u)
+        dir = moderate(dir);
 #endif
     precise float squared = (dir.x * dir.x + dir.y * dir.y) + dir.z * dir.z;
     precise vec3 unit = dir * inverse_square_root(squared);

@@ -82,11 +82,26 @@ void begin_user()
 {
 }
 
+// Call it before any function of the user's. Initial values of global variables are computed here,
+// before there is a ray: for them the pixel is 0, 0, and directions and distances are 0.
+void begin_functions()
+{
+    hook_pixel = uvec2(0u);
+    hook_ray.origin = hook_ray.dir = vec3(0.0);
+    hook_ray.steps = 0u;
+    hook_hit = make_hit(0.0);
+    traced_hit = hook_hit;
+    hook_shade = traced_shade = HIT_NONE;
+    hook_media = uvec4(0u);
+    begin_user();
+}
+
 void aim_camera(uvec2 pixel, vec2 at, inout vec3 origin, inout vec3 dir)
 {
     if (!is_in_picture(pixel)) // beyond the picture's edge: the ray is not used
         return;
     hook_pixel = pixel;
+    hook_ray.origin = origin;
     hook_ray.dir = dir;
     hook_ray.steps = 0u;
     begin_hook();

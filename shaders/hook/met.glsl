@@ -29,6 +29,7 @@ void tell_functions(Met met)
 #ifdef HOOKS
     hook_pixel = slot_pixel(met.slot);
     hook_hit = met.hit;
+    hook_shade = met.s.shade_index;
     hook_media = met.c.before;
 #endif
 }

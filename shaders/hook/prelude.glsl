@@ -9,10 +9,13 @@
 #include "../bind/hook.glsl"
 #include "../bind/lit_surface.glsl"
 
-// The state of a call. The first three are set before each call of a user's function.
+// The state of a call. Those up to hook_media are set before each call of a user's function.
 uvec2 hook_pixel;
 Hit hook_hit;            // of the surface
+uint hook_shade;         // its shade_index
 uvec4 hook_media;        // media around it
+Hit traced_hit;          // what trace() has met last
+uint traced_shade;       // its shade_index
 uint hook_status = 0u;   // STATUS_* of the rays that the user's functions have traced
 uint hook_traced = 0u;   // number of those rays
 uint whit_fuel = 0u;     // iterations of loops that the call may still take
@@ -174,6 +177,17 @@ vec3 off_surface(Surface s, vec3 dir)
 // Tests the user's shape, which is in no tree (hook/shape.glsl).
 void add_shape(vec3 origin, vec3 dir, bool alive, inout Hit hit);
 
+// Instance and primitive that do not block rays from the surface: its own, where it is that of the
+// call or that of the last trace(). Rays from other surfaces are only kept off them (off_surface).
+uvec2 skip_of(Surface s)
+{
+    if (s.instance == hook_hit.instance && s.shade_index == hook_shade)
+        return uvec2(hook_hit.instance, hook_hit.primitive);
+    if (s.instance == traced_hit.instance && s.shade_index == traced_shade)
+        return uvec2(traced_hit.instance, traced_hit.primitive);
+    return uvec2(HIT_NONE);
+}
+
 // The share of light that comes to `origin` from the distance `distance` along `dir`: 1 where
 // nothing is in between, 0 behind something opaque.
 vec3 visible_from(vec3 origin, vec3 dir, float distance, uvec2 skip, vec3 absorption)
@@ -191,8 +205,7 @@ vec3 visible_from(vec3 origin, vec3 dir, float distance, uvec2 skip, vec3 absorp
 // visible_from for a surface, which does not block itself.
 vec3 visible(Surface s, vec3 dir, float distance)
 {
-    return visible_from(off_surface(s, dir), dir, distance, uvec2(hook_hit.instance, hook_hit.primitive),
-                        surrounding_absorption(hook_media));
+    return visible_from(off_surface(s, dir), dir, distance, skip_of(s), surrounding_absorption(hook_media));
 }
 
 // Finds the surface that a ray hits first, and its distance. False: it hits nothing, and `met` is
@@ -210,6 +223,8 @@ bool trace(vec3 origin, vec3 dir, out Surface met, out float distance)
         met_origin = origin;
         met_dir = dir;
         met = fetch_surface(hit);
+        traced_hit = hit;
+        traced_shade = met.shade_index;
         if (dot(dir, met.ng) > 0.0)
             met.ng = -met.ng;
         if (dot(met.ns, met.ng) < 0.0)
@@ -224,6 +239,7 @@ vec3 lit_by(uint index, Surface s, Optics o, vec3 to_eye)
     if (frame.light_count == 0u)
         return vec3(0.0);
     Lit lit = lit_surface(s, o, vec3(1.0), hook_media);
+    uvec2 own = skip_of(s);
     lit.view = to_eye;
     gpu_light from = light_of(index);
     EmitterSum emitter = EmitterSum(0.0, vec3(0.0), vec3(0.0));
@@ -234,8 +250,7 @@ vec3 lit_by(uint index, Surface s, Optics o, vec3 to_eye)
         vec3 share = vec3(0.0);
         if (a.wanted)
             share = visible_from(lit.origin, a.dir, a.distance,
-                                 uvec2(hook_hit.instance, a.above ? hook_hit.primitive : HIT_NONE),
-                                 lit.absorption);
+                                 uvec2(own.x, a.above ? own.y : HIT_NONE), lit.absorption);
         float weight = a.faces ? a.cos_light * a.strength : 0.0;
         emitter.weight += weight;
         emitter.visible += share * weight;

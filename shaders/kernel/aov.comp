@@ -17,7 +17,7 @@ layout(local_size_x_id = 0) in;
 void main()
 {
     load_frame();
-    begin_user();
+    begin_functions();
     uint item = invocation_item(0u, hit_capacity());
     bool alive = item != ITEM_NONE;
     uint id = fetch_listed_hit(alive ? item : 0u);

@@ -114,7 +114,7 @@ void main()
 {
     load_frame();
 #ifdef HOOKS
-    begin_user();
+    begin_functions();
 #endif
     if (SPEC_SECONDARY != 0u && invocation_slot() == 0u)
         generations[chunk.generation + 1u].firsts = firsts_behind();

@@ -88,7 +88,7 @@ void call_functions(uint id, bool alive, uint row)
 void main()
 {
     load_frame();
-    begin_user();
+    begin_functions();
     uint item = invocation_item(0u, hit_capacity()), row = 0u;
     bool alive = item != ITEM_NONE;
     uint id = fetch_listed_hit(alive ? item : 0u);

@@ -17,7 +17,7 @@ layout(local_size_x_id = 0) in;
 void main()
 {
     load_frame();
-    begin_user();
+    begin_functions();
     uint id = traced_item(0u);
     id = id == ITEM_NONE ? 0u : id;
     vec4 own = fetch_sum(id);

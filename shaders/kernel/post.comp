@@ -18,13 +18,14 @@ layout(local_size_x_id = 0) in;
 void main()
 {
     load_frame();
-    begin_user();
+    begin_functions();
     uint id = camera_item(0u);
     uint slot = slot_of(id == ITEM_NONE ? 0u : id);
     uvec2 at = slot_place(slot);
     bool alive = id != ITEM_NONE && is_tile_done() && is_in_picture(at);
     uint pixel = alive ? (at.y - chunk.band_y) * frame.width + at.x : 0u;
     hook_pixel = slot_pixel(slot);
+    hook_ray.origin = frame.eye;
     hook_records = alive; // called once for all samples of the pixel
     hook_id = id;
     begin_hook();

@@ -244,7 +244,7 @@ void main()
 {
     load_frame();
 #ifdef HOOKS
-    begin_user();
+    begin_functions();
 #endif
     bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u && chunk.deferred != 0u;
     uint item = waited ? deferred_item(0u) : invocation_item(0u, hit_capacity());

@@ -107,7 +107,7 @@ void main()
 {
     load_frame();
 #ifdef HOOKS
-    begin_user();
+    begin_functions();
 #endif
     bool waited = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES != 0u && chunk.deferred != 0u;
     bool alive[SPEC_PACKET_RAYS];

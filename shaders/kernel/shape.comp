@@ -35,6 +35,8 @@ ShapeRay generation_ray()
     Ray ray = fetch_ray(asked.at, slot);
     count_camera(0u, is_primary());
     uvec2 pixel = slot_pixel(slot);
+    hook_pixel = pixel;
+    hook_ray = ray;
     asked.alive = asked.alive && (!is_primary() || is_in_picture(slot_place(slot)));
     asked.origin = ray.origin;
     asked.dir = ray.dir;
@@ -56,6 +58,11 @@ ShapeRay shadow_ray(gpu_light light, uint r, uint rays, uint point)
     uint index = fetch_listed_lit(asked.at);
     Lit lit = fetch_lit(asked.alive ? index : 0u);
     Arrival a = arrive(asked.alive, lit, light, point);
+    uint slot;
+    hook_ray = fetch_ray(lit.id, slot);
+    hook_ray.origin = lit.origin;
+    hook_ray.dir = a.dir;
+    hook_pixel = slot_pixel(slot);
     asked.alive = a.wanted;
     asked.origin = lit.origin;
     asked.dir = a.dir;
@@ -67,7 +74,7 @@ ShapeRay shadow_ray(gpu_light light, uint r, uint rays, uint point)
 void main()
 {
     load_frame();
-    begin_user();
+    begin_functions();
     bool to_light = SPEC_SHADOWS != 0u && SPEC_LIGHTS != 0u && chunk.list != LIST_RAYS;
     gpu_light light = fetch_light(to_light ? chunk.light : 0u);
     uint rays = to_light && is_primary() ? SPEC_LIT_RAYS : 1u;

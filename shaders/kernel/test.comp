@@ -22,7 +22,7 @@ void run_test(uint test, uint seed)
 void main()
 {
     load_frame();
-    begin_user();
+    begin_functions();
     uint seed = gl_GlobalInvocationID.x;
     hook_pixel = uvec2(seed % TEST_ROW, seed / TEST_ROW); // so that random() differs between seeds
     hook_ray.dir = vec3(0.0, 0.0, -1.0);

@@ -147,7 +147,7 @@ TEST(highlights_that_nobody_sees_take_no_shadow_rays)
    100 times the largest error. */
 TEST(bailout_keeps_its_bound)
 {
-    const double bailouts[] = {-1.0, 1.0 / 16, 1.0 / 64, 1.0 / 256};
+    const double bailouts[] = {0.0, 1.0 / 16, 1.0 / 64, 1.0 / 256};
     for (int which = 0; which < 2; ++which) {
         own_image full = {0};
         for (int i = 0; i < 4; ++i) {

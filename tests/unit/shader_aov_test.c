@@ -51,7 +51,8 @@ static struct drawn draw(const whit_renderer_params *params)
     own_whit_renderer *renderer = renderer_of(params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     drawn.color = image_of(renderer, WHIT_AOV_COLOR);
-    drawn.ids = image_of(renderer, WHIT_AOV_IDS);
+    if (!params->sampling.first) /* ids are those of the first sample */
+        drawn.ids = image_of(renderer, WHIT_AOV_IDS);
     for (uint32_t i = 0; params->shader && i < AOVS; ++i)
         assert_int_equal(
             whit_renderer_image(renderer, (whit_aov)(WHIT_AOV_SHADER + i), &drawn.aovs[i]),
