@@ -158,33 +158,38 @@ static whit_result read_transmission(struct reading *r)
     return read_texture(r, object, "transmissionTexture", SCENE_SLOT_TRANSMISSION);
 }
 
-/* Reads KHR_materials_pbrSpecularGlossiness into a PHONG material. Its exponent, 2 / alpha^2 - 2,
-   makes the Blinn-Phong lobe as wide as that of GGX; smooth surfaces are mirrors. */
+/* Reads KHR_materials_pbrSpecularGlossiness. Its specular colour is F0, which METAL_ROUGH has as a
+   tint of the F0 of its index of refraction; what the specular colour reflects is missing from the
+   diffuse light. A texture of the specular colour changes F0 alone: as its factor is most often 1,
+   the factor does not say how much is missing. assimp states opacity in baseColorFactor alone. */
 static whit_result read_specular_glossiness(struct reading *r, const json_t *object)
 {
     struct scene_material *out = r->out;
-    float diffuse[4] = {1, 1, 1, 1}, glossiness = 1;
-    for (int i = 0; i < 3; i++)
-        out->specular[i] = 1;
-    if (!gltf_floats(r->gltf, object, &r->at, "diffuseFactor", 4, diffuse) ||
-        !gltf_floats(r->gltf, object, &r->at, "specularFactor", 3, out->specular) ||
-        !number(r, object, "glossinessFactor", 0, 1, &glossiness))
-        return WHIT_ERROR_INPUT;
-    float alpha = (1 - glossiness) * (1 - glossiness);
-    out->model = WHIT_MODEL_PHONG;
-    out->shininess = fminf(2 / fmaxf(alpha * alpha, 1e-6f) - 2, 1e4f);
-    for (int i = 0; i < 3; i++) {
-        out->diffuse[i] = fmaxf(diffuse[i], 0);
-        out->reflection[i] = glossiness > 0.9f ? out->specular[i] : 0;
-    }
-    out->fresnel = glossiness > 0.9f;
-    out->opacity = fminf(fmaxf(diffuse[3], 0), 1);
+    float diffuse[4] = {1, 1, 1, 1}, specular[3] = {1, 1, 1}, glossiness = 1;
+    float root = (out->ior - 1) / (out->ior + 1);
     scene_texture_use_init(&out->textures[SCENE_SLOT_METAL_ROUGH]);
     scene_texture_use_init(&out->textures[SCENE_SLOT_DIFFUSE]);
+    scene_texture_use_init(&out->textures[SCENE_SLOT_SPECULAR_LEVEL]);
     whit_result result = read_texture(r, object, "diffuseTexture", SCENE_SLOT_DIFFUSE);
     if (result == WHIT_OK)
         result = read_texture(r, object, "specularGlossinessTexture", SCENE_SLOT_SPECULAR);
-    return result;
+    if (result != WHIT_OK)
+        return result;
+    if (!gltf_floats(r->gltf, object, &r->at, "diffuseFactor", 4, diffuse) ||
+        !gltf_floats(r->gltf, object, &r->at, "specularFactor", 3, specular) ||
+        !number(r, object, "glossinessFactor", 0, 1, &glossiness))
+        return WHIT_ERROR_INPUT;
+    float most = fminf(fmaxf(fmaxf(specular[0], specular[1]), fmaxf(specular[2], 0)), 1);
+    bool textured = out->textures[SCENE_SLOT_SPECULAR].texture != SCENE_NONE;
+    for (int i = 0; i < 3; i++) {
+        out->diffuse[i] = fmaxf(diffuse[i], 0) * (textured ? 1 : 1 - most);
+        out->specular[i] = fmaxf(specular[i], 0) / (root * root);
+    }
+    out->metallic = 0;
+    out->roughness = 1 - glossiness;
+    out->specular_level = most > 0; /* 0: no reflection at grazing angles either */
+    out->opacity = fminf(out->opacity, fminf(fmaxf(diffuse[3], 0), 1));
+    return WHIT_OK;
 }
 
 static whit_result read_other_models(struct reading *r)

@@ -5,6 +5,7 @@
 #include <assimp/material.h>
 #include <assimp/metadata.h>
 #include <assimp/scene.h>
+#include <math.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -117,6 +118,57 @@ static void shorten_paths(struct aiMaterial *material)
     }
 }
 
+/* --- highlights ----------------------------------------------------------------------------- */
+
+/* Whether the file asks for no highlight. assimp gives a COLLADA material without one a specular
+   colour of 0.4 and an exponent of 10. */
+static bool is_matt(const struct aiMaterial *material, enum import_kind kind, const float color[3],
+                    float exponent)
+{
+    int model = aiShadingMode_Phong;
+    unsigned one = 1;
+    aiGetMaterialIntegerArray(material, AI_MATKEY_SHADING_MODEL, &model, &one);
+    bool filled_in = kind == IMPORT_DAE && color[0] == 0.4f && color[1] == 0.4f &&
+                     color[2] == 0.4f && exponent == 10;
+    return filled_in || !(exponent > 0) || model == aiShadingMode_Flat ||
+           model == aiShadingMode_Gouraud || model == aiShadingMode_NoShading;
+}
+
+static float *find_floats(struct aiMaterial *material, const char *key, size_t count)
+{
+    for (unsigned i = 0; i < material->mNumProperties; i++) {
+        struct aiMaterialProperty *property = material->mProperties[i];
+        if (strcmp(property->mKey.data, key) == 0 && property->mType == aiPTI_Float &&
+            property->mDataLength >= count * sizeof(float))
+            return (float *)(void *)property->mData;
+    }
+    return NULL;
+}
+
+/* Restates Phong's specular colour and exponent as the F0 and glossiness that the exporter writes.
+   The lobe of GGX gets the width of Blinn's, alpha^2 = 2 / (n + 2), and its energy: a lobe of
+   exponent n sends 8 / (n + 8) as much light as one of exponent 0 (Akenine-Moeller et al.,
+   "Real-Time Rendering"). assimp gives an FBX without a roughness that of 1 - sqrt(n) / 10. Other
+   materials with a roughness or a glossiness are physically based, and stay as they are. */
+static void restate_highlight(struct aiMaterial *material, enum import_kind kind)
+{
+    float *color = find_floats(material, "$clr.specular", 3);
+    float *shininess = find_floats(material, "$mat.shininess", 1);
+    float *roughness = find_floats(material, "$mat.roughnessFactor", 1);
+    float exponent = shininess ? fmaxf(*shininess, 0) : 0;
+    if (!color || find_floats(material, "$mat.glossinessFactor", 1) ||
+        (roughness && fabsf(1 - sqrtf(exponent) / 10 - *roughness) > 1e-4f))
+        return;
+    float share = is_matt(material, kind, color, exponent) ? 0 : 8 / (exponent + 8);
+    float glossiness = 1 - sqrtf(sqrtf(2 / (exponent + 2)));
+    for (int i = 0; i < 3; i++)
+        color[i] *= share;
+    if (roughness)
+        *roughness = 1 - glossiness;
+    else if (shininess) /* the exporter's scale of glossiness */
+        *shininess = 1000 * glossiness;
+}
+
 /* --- the whole ------------------------------------------------------------------------------ */
 
 /* Removes from assimp's scene what whit does not import, and counts it for notes. Texture
@@ -147,7 +199,9 @@ const struct aiExportDataBlob *importer_glb(struct aiScene *scene,
 {
     drop(scene, request->kind, counts);
     place(scene, request);
-    for (unsigned i = 0; i < scene->mNumMaterials; i++)
+    for (unsigned i = 0; i < scene->mNumMaterials; i++) {
         shorten_paths(scene->mMaterials[i]);
+        restate_highlight(scene->mMaterials[i], request->kind);
+    }
     return aiExportSceneToBlob(scene, "glb2", 0);
 }

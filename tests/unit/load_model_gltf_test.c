@@ -257,6 +257,26 @@ TEST_IN(materials_and_extensions, fixture_begin, fixture_end)
     assert_true(fixture_noted("KHR_materials_clearcoat is not drawn"));
 }
 
+TEST_IN(specular_colors_are_f0, fixture_begin, fixture_end)
+{
+    const struct scene *scene =
+        load(ONE_NODE ",\"materials\":[{\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{"
+                      "\"baseColorFactor\":[1,1,1,0.25]},\"extensions\":"
+                      "{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.8,0.4,0,1],"
+                      "\"specularFactor\":[0.25,0.5,0],\"glossinessFactor\":0.75}}},"
+                      "{\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{"
+                      "\"specularFactor\":[0,0,0],\"glossinessFactor\":0}}}]");
+    const struct scene_material *m = &scene->materials[0];
+    assert_int_equal(m->model, WHIT_MODEL_METAL_ROUGH);
+    assert_float_equal(m->diffuse[0], 0.4, 1e-6);
+    assert_float_equal(m->specular[0] * 0.04f, 0.25, 1e-6);
+    assert_float_equal(m->metallic, 0, 0);
+    assert_float_equal(m->roughness, 0.25, 1e-6);
+    assert_float_equal(m->opacity, 0.25, 0);
+    assert_float_equal(scene->materials[1].diffuse[0], 1, 0);
+    assert_float_equal(scene->materials[1].specular_level, 0, 0);
+}
+
 TEST_IN(faces_have_one_side_unless_said, fixture_begin, fixture_end)
 {
     const struct scene *scene =

@@ -79,7 +79,12 @@ static const char collada[] =
     "<diffuse><texture texture='t' texcoord='U'/></diffuse></lambert></technique>"
     "</profile_COMMON></effect><effect id='f'><profile_COMMON><technique sid='c'><lambert>"
     "<diffuse><color>0.25 0.5 0.75 1</color></diffuse></lambert></technique></profile_COMMON>"
-    "</effect></library_effects><library_materials><material id='m' name='painted'>"
+    "</effect><effect id='h'><profile_COMMON><technique sid='c'><phong>"
+    "<diffuse><color>0.25 0.5 0.75 1</color></diffuse><specular><color>0.5 0.25 0 1</color>"
+    "</specular><shininess><float>32</float></shininess><transparent opaque='A_ONE'>"
+    "<color>1 1 1 0.25</color></transparent><transparency><float>1</float></transparency></phong>"
+    "</technique></profile_COMMON></effect></library_effects><library_materials><material id='m' "
+    "name='painted'>"
     "<instance_effect url='#%s'/></material></library_materials>"
     "<library_geometries><geometry id='g' name='tri'><mesh>" SOURCE(
         "p", "9", "0 0 0 2 0 0 0 0 4", "3",
@@ -139,6 +144,27 @@ TEST_IN(collada_names_its_textures, fixture_begin, fixture_end)
     assert_float_equal(material_of(scene)->emission[0], 0.5, 1e-6);
     assert_float_equal(scene->meshes[0].uvs[0][0], 0.25, 1e-6);
     assert_float_equal(scene->meshes[0].uvs[0][1], 0.25, 1e-6); /* downwards */
+}
+
+TEST_IN(collada_lambert_has_no_highlight, fixture_begin, fixture_end)
+{
+    const struct scene_material *matt = material_of(load(write_collada("f", "", "")));
+    assert_int_equal(matt->model, WHIT_MODEL_METAL_ROUGH);
+    assert_float_equal(matt->specular_level, 0, 0);
+}
+
+/* The highlight keeps its energy: 8 / (n + 8) of its colour, of which the largest part is missing
+   from the diffuse light. */
+TEST_IN(collada_highlights_and_opacity, fixture_begin, fixture_end)
+{
+    const struct scene_material *phong = material_of(load(write_collada("h", "", "")));
+    assert_float_equal(phong->specular_level, 1, 0);
+    assert_float_equal(phong->specular[0] * 0.04f, 0.1, 1e-6);
+    assert_float_equal(phong->specular[1] * 0.04f, 0.05, 1e-6);
+    assert_float_equal(phong->diffuse[2], 0.75f * 0.9f, 1e-6);
+    assert_float_equal(2 / powf(phong->roughness, 4) - 2, 32, 1e-3);
+    assert_float_equal(phong->opacity, 0.25, 1e-6);
+    assert_int_equal(phong->alpha, SCENE_ALPHA_BLEND);
 }
 
 TEST_IN(collada_with_three_texture_coordinates, fixture_begin, fixture_end)
