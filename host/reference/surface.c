@@ -166,8 +166,11 @@ bool surface_face(struct surface *s, struct dvec3 dir)
         s->ng = d3_scale(s->ng, -1.0);
         s->ns = d3_scale(s->ns, -1.0);
     }
-    if (dvec3_dot(s->ns, s->ng) < 0.0)
+    s->turned = inside;
+    if (dvec3_dot(s->ns, s->ng) < 0.0) {
         s->ns = d3_scale(s->ns, -1.0);
+        s->turned = !inside;
+    }
     if (dvec3_dot(s->ns, dir) > 0.0)
         s->ns = s->ng;
     return inside;

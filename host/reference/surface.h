@@ -18,6 +18,7 @@ struct surface {
     const struct scene_material *material;
     uint32_t material_index, instance, primitive;
     bool sphere;
+    bool turned; /* ns is the reverse of the normal that the mesh states */
 };
 
 struct surface surface_at(const struct reference *reference, const struct hit *hit);

@@ -175,7 +175,7 @@ double texture_opacity(const struct reference *reference, const struct surface *
 }
 
 /* Unit directions in the surface, orthogonal to the normal, in which u and v of the texture
-   grow. */
+   grow; where the normal is turned, their reverse. */
 static void tangents(const struct surface *s, const struct scene_texture_use *use,
                      struct dvec3 *right, struct dvec3 *down)
 {
@@ -188,6 +188,8 @@ static void tangents(const struct surface *s, const struct scene_texture_use *us
             d[k][i] = (double)m[3 * i] * du + (double)m[3 * i + 1] * dv;
     }
     double det = d[0][0] * d[1][1] - d[0][1] * d[1][0], inv = det != 0.0 ? 1.0 / det : 0.0;
+    if (s->turned) /* the bent normal is the reverse of that in front */
+        inv = -inv;
     struct dvec3 t = d3_scale(dvec3_along(d3_scale(s->e1, d[1][1]), s->e2, -d[0][1]), inv);
     struct dvec3 b = d3_scale(dvec3_along(d3_scale(s->e2, d[0][0]), s->e1, -d[1][0]), inv);
     t = dvec3_along(t, s->ns, -dvec3_dot(s->ns, t));

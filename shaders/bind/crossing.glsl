@@ -27,8 +27,11 @@ bool face_ray(inout Surface s, vec3 dir)
         s.ng = -s.ng;
         s.ns = -s.ns;
     }
-    if (dot(s.ns, s.ng) < 0.0)
+    s.turned = inside;
+    if (dot(s.ns, s.ng) < 0.0) {
         s.ns = -s.ns;
+        s.turned = !inside;
+    }
     if (dot(s.ns, dir) > 0.0)
         s.ns = s.ng;
     return inside;

@@ -174,6 +174,7 @@ Surface fetch_surface(Hit hit)
     s.shade_index = shade_index_of(hit.instance, hit.primitive);
     s.instance = hit.instance;
     s.on_sphere = is_on_sphere(hit);
+    s.turned = false;
     s.material = fetch_material_index(s.shade_index);
     if (SPEC_SPHERES != SPHERES_ONLY)
         fetch_on_triangle(hit, s);

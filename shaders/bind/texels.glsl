@@ -147,7 +147,8 @@ void texture_frame(Surface s, gpu_texture t, out vec3 tangent, out vec3 bitangen
     bitangent = (s.e2 * d1.x - s.e1 * d2.x) * inv;
 }
 
-// Bends s.ns by a normal map in tangent space, or by the slope of a height map.
+// Bends s.ns by a normal map in tangent space, or by the slope of a height map. Seen from behind, the
+// bent normal is the reverse of that in front: what stands out there is a dent here.
 void bend_normal(inout Surface s, gpu_material material, Texels x)
 {
     bool is_map = material.tex_normal != TEXTURE_NONE;
@@ -157,6 +158,8 @@ void bend_normal(inout Surface s, gpu_material material, Texels x)
     gpu_texture picture = fetch_texture_use(use);
     vec3 tangent, bitangent;
     texture_frame(s, picture, tangent, bitangent);
+    tangent = s.turned ? -tangent : tangent;
+    bitangent = s.turned ? -bitangent : bitangent;
     vec3 t = normalize_or(tangent - s.ns * dot(s.ns, tangent), vec3(0.0));
     vec3 b = normalize_or(bitangent - s.ns * dot(s.ns, bitangent), vec3(0.0));
     vec3 bent;

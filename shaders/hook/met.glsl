@@ -145,7 +145,8 @@ void store_met(uint row, Met met)
     store_hook_words(row + 7u, uvec4(floatBitsToUint(s.e1), s.shade_index));
     store_hook_words(row + 8u, uvec4(floatBitsToUint(s.e2), s.instance));
     store_hook_words(row + 9u, uvec4(floatBitsToUint(s.footprint), s.material));
-    store_hook_words(row + 10u, uvec4(floatBitsToUint(s.color), uint(s.on_sphere)));
+    uint sides = uint(s.on_sphere) | uint(s.turned) << 1;
+    store_hook_words(row + 10u, uvec4(floatBitsToUint(s.color), sides));
 }
 
 // Fills in what the user's functions can read, and nothing else of `met`.
@@ -175,7 +176,8 @@ Met fetch_stored_met(uint row)
     met.s.footprint = row_vec3(footprint);
     met.s.material = footprint.w;
     met.s.color = row_vec3(color);
-    met.s.on_sphere = color.w != 0u;
+    met.s.on_sphere = (color.w & 1u) != 0u;
+    met.s.turned = (color.w & 2u) != 0u;
     return met;
 }
 

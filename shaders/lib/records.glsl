@@ -21,6 +21,7 @@ struct Surface {
     uint shade_index; // index among the triangles of all meshes
     uint instance;
     bool on_sphere;
+    bool turned; // ns is the reverse of the normal that the mesh states
     uint material;
     float u, v; // weights of the triangle's second and third vertex; on a sphere texture
                 // coordinates

@@ -91,6 +91,15 @@ TEST_BY_TURNS(lengths_of_normals_do_not_matter, 1, 2)
     image_finish(&images[1]);
 }
 
+static void reverse_winding(struct scene_mesh *mesh)
+{
+    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        uint32_t other = mesh->indices[3 * t];
+        mesh->indices[3 * t] = mesh->indices[3 * t + 1];
+        mesh->indices[3 * t + 1] = other;
+    }
+}
+
 /* With reversed normals, reversed winding, or both, the side that faces the eye is shaded. */
 TEST_BY_TURNS(turned_normals_shade_the_same, 0, 2)
 {
@@ -98,11 +107,8 @@ TEST_BY_TURNS(turned_normals_shade_the_same, 0, 2)
         struct scene_mesh mesh = mesh_plane(10);
         if (i & 1)
             fill_normals(&mesh, 0, -1, 0);
-        for (uint32_t t = 0; (i & 2) && t < mesh.triangle_count; ++t) {
-            uint32_t other = mesh.indices[3 * t];
-            mesh.indices[3 * t] = mesh.indices[3 * t + 1];
-            mesh.indices[3 * t + 1] = other;
-        }
+        if (i & 2)
+            reverse_winding(&mesh);
         assert_even(sunny(from_above(), mesh, white()), COS_SUN, 1e-6);
     }
 }
@@ -156,6 +162,29 @@ static struct scene *textured_floor(const float uvs[4][2], bool bent)
     if (bent)
         m.textures[SCENE_SLOT_NORMAL].texture = add_texel(scene, 240, 128, 180);
     return sunny(scene, mesh, m);
+}
+
+static struct image bent_floor(bool turned, uint8_t x, uint8_t y)
+{
+    struct scene_mesh mesh = mesh_plane(10);
+    struct scene_material m = white();
+    struct scene *scene = from_above();
+    m.textures[SCENE_SLOT_NORMAL].texture = add_texel(scene, x, y, 230);
+    if (turned) {
+        fill_normals(&mesh, 0, -1, 0);
+        reverse_winding(&mesh);
+    }
+    return color_of(sunny(scene, mesh, m), NULL, &all_params);
+}
+
+/* glTF reverses the normal of a back face after its normal map: what stands out in front is a dent
+   behind. 51 and 204 stand for -0.6 and 0.6. */
+TEST(maps_are_dents_from_behind)
+{
+    own_image front = bent_floor(false, 51, 204), behind = bent_floor(true, 204, 51);
+    own_image same = bent_floor(true, 51, 204);
+    assert_memory_equal(front.pixels, behind.pixels, SIDE * SIDE * 4 * sizeof(float));
+    assert_true(fabsf(front.pixels[0] - same.pixels[0]) > 0.1f);
 }
 
 static double linear_of(uint8_t srgb)
