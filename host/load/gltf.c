@@ -177,7 +177,7 @@ static void note_unused(const struct gltf *gltf)
     uint32_t skins = gltf_count(gltf, "skins");
     if (skins)
         scene_note(gltf->scene, SCENE_NOTE_WARNING,
-                   "%s: skins are not animated: %u drawn in the bind pose",
+                   "%s: skins are not animated: %u drawn as their joints stand at rest",
                    path_name(gltf->request->path), skins);
 }
 
@@ -200,13 +200,15 @@ static whit_result allocate(struct gltf *gltf)
     gltf->textures = none_indices(gltf->image_count);
     gltf->materials = none_indices(gltf->material_count);
     gltf->meshes = none_indices(gltf->mesh_count);
+    gltf->skinned = none_indices(gltf->node_count);
     gltf->nodes = none_indices(gltf->node_count);
     gltf->parents = none_indices(gltf->node_count);
     gltf->order = none_indices(gltf->node_count);
+    gltf->worlds = array_alloc(gltf->node_count, sizeof *gltf->worlds);
     gltf->mesh_used = array_alloc_zeroed(gltf->mesh_count, sizeof *gltf->mesh_used);
     gltf->default_material = SCENE_NONE;
-    bool ok = gltf->textures && gltf->materials && gltf->meshes && gltf->nodes && gltf->parents &&
-              gltf->order && gltf->mesh_used;
+    bool ok = gltf->textures && gltf->materials && gltf->meshes && gltf->skinned && gltf->worlds &&
+              gltf->nodes && gltf->parents && gltf->order && gltf->mesh_used;
     return ok ? WHIT_OK : WHIT_ERROR_MEMORY;
 }
 
@@ -219,6 +221,8 @@ static void finish(struct gltf *gltf)
     free(gltf->textures);
     free(gltf->materials);
     free(gltf->meshes);
+    free(gltf->skinned);
+    free(gltf->worlds);
     free(gltf->nodes);
     free(gltf->parents);
     free(gltf->order);
@@ -232,8 +236,8 @@ whit_result gltf_load_bytes(struct scene *scene, const struct model_request *req
                             const uint8_t *data, size_t size_bytes)
 {
     static whit_result (*const steps[])(struct gltf *) = {
-        gltf_plan_nodes,  gltf_load_buffers, gltf_load_materials,
-        gltf_load_meshes, gltf_add_nodes,    gltf_add_animations,
+        gltf_plan_nodes,  gltf_load_buffers, gltf_load_materials, gltf_place_nodes,
+        gltf_load_meshes, gltf_fill_nodes,   gltf_add_animations,
     };
     struct gltf gltf = {.scene = scene, .request = request, .file = data, .file_bytes = size_bytes};
     whit_result result = read_json(&gltf);

@@ -28,13 +28,15 @@ struct gltf {
     json_t *root;
     struct gltf_bytes chunk; /* binary chunk of a GLB */
     struct gltf_bytes *buffers;
-    uint32_t *textures;  /* by image: scene's texture, SCENE_NONE: not loaded yet */
-    uint32_t *materials; /* scene's index */
-    uint32_t *meshes;    /* scene's index, SCENE_NONE: no triangles, or not drawn */
-    uint32_t *nodes;     /* scene's index, SCENE_NONE: not in the glTF scene that is drawn */
-    uint32_t *parents;   /* by node: file's index of its parent, or SCENE_NONE */
-    uint32_t *order;     /* drawn nodes of the file, parents first */
-    bool *mesh_used;
+    uint32_t *textures;    /* by image: scene's texture, SCENE_NONE: not loaded yet */
+    uint32_t *materials;   /* scene's index */
+    uint32_t *meshes;      /* scene's index, SCENE_NONE: no triangles, or not drawn */
+    uint32_t *skinned;     /* by node: scene's index of its mesh with its skin applied */
+    uint32_t *nodes;       /* scene's index, SCENE_NONE: not in the glTF scene that is drawn */
+    uint32_t *parents;     /* by node: file's index of its parent, or SCENE_NONE */
+    uint32_t *order;       /* drawn nodes of the file, parents first */
+    bool *mesh_used;       /* by a node without a skin */
+    struct affine *worlds; /* by node that is drawn: its transform at rest */
     struct gltf_ignored *ignored;
     struct key_table ignored_names; /* index in `ignored` by extension */
     uint64_t counted_bytes;         /* memory counted for buffers in files of their own */

@@ -67,7 +67,7 @@ bool gltf_accessor(const struct gltf *gltf, uint32_t index, struct gltf_accessor
 bool gltf_is_whole(const struct gltf_accessor *accessor)
 {
     uint32_t component = accessor->component;
-    return component == 5121 || component == 5123 || component == 5125;
+    return component == GLTF_UNSIGNED_BYTE || component == GLTF_UNSIGNED_SHORT || component == 5125;
 }
 
 /* --- elements ------------------------------------------------------------------------------- */

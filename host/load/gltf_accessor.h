@@ -4,7 +4,7 @@
 
 #include "load/gltf.h"
 
-enum { GLTF_UNSIGNED_SHORT = 5123, GLTF_FLOAT = 5126 };
+enum { GLTF_UNSIGNED_BYTE = 5121, GLTF_UNSIGNED_SHORT = 5123, GLTF_FLOAT = 5126 };
 
 struct gltf_accessor {
     uint32_t index; /* its own index in the file */

@@ -6,6 +6,8 @@
 #include "base/file.h"
 #include "load/gltf_draco.h"
 #include "load/gltf_geometry.h"
+#include "load/gltf_nodes.h"
+#include "load/gltf_skin.h"
 #include "load/model_mesh.h"
 #include "scene/afford.h"
 
@@ -28,6 +30,7 @@ static bool plan_attributes(const struct gltf *gltf, const json_t *object,
     json_t *named;
     if (!gltf_object(gltf, object, &out->at, "attributes", &named))
         return false;
+    out->attributes = named;
     for (int i = 0; i < IMPORT_INDICES; i++) {
         struct gltf_accessor *accessor = &out->accessors[i];
         const char *name = gltf_attributes[i].name;
@@ -155,6 +158,7 @@ static bool read_indices(const struct gltf *gltf, const struct gltf_primitive *p
 
 struct geometry {
     struct gltf *gltf;
+    const struct gltf_skin *skin; /* of the mesh that is read, or NULL */
     uint64_t lines_and_points, morphed;
     bool drawn;
 };
@@ -219,7 +223,7 @@ static whit_result material_of(struct gltf *gltf, uint32_t index, uint32_t *mate
 }
 
 static whit_result read_primitive(struct gltf *gltf, const struct gltf_primitive *primitive,
-                                  struct mesh *mesh)
+                                  const struct gltf_skin *skin, struct mesh *mesh)
 {
     struct part *part = &mesh->parts[mesh->count];
     struct model_part *used = &mesh->used[mesh->count++];
@@ -230,7 +234,8 @@ static whit_result read_primitive(struct gltf *gltf, const struct gltf_primitive
     if (result != WHIT_OK)
         return result;
     if (!read_vertices(gltf, primitive, part) ||
-        (!part->arrays[IMPORT_INDICES] && !read_indices(gltf, primitive, part)))
+        (!part->arrays[IMPORT_INDICES] && !read_indices(gltf, primitive, part)) ||
+        (skin && !gltf_skin_apply(gltf, skin, primitive, part)))
         return WHIT_ERROR_INPUT;
     note_lost(gltf, primitive, part);
     return material_of(gltf, primitive->material, &used->material);
@@ -264,7 +269,7 @@ static whit_result add_primitive(struct geometry *geometry, const struct gltf_pl
     if (triangles_of(&primitive) == 0)
         return WHIT_OK;
     geometry->drawn = true;
-    return read_primitive(gltf, &primitive, mesh);
+    return read_primitive(gltf, &primitive, geometry->skin, mesh);
 }
 
 /* --- meshes --------------------------------------------------------------------------------- */
@@ -285,7 +290,7 @@ static whit_result read_mesh(struct geometry *geometry, uint32_t index, const js
     return complete ? result : WHIT_ERROR_MEMORY;
 }
 
-static whit_result load_mesh(struct geometry *geometry, uint32_t index)
+static whit_result load_mesh(struct geometry *geometry, uint32_t index, uint32_t *out)
 {
     struct gltf *gltf = geometry->gltf;
     struct mesh mesh = {0};
@@ -306,13 +311,30 @@ static whit_result load_mesh(struct geometry *geometry, uint32_t index)
         mesh.used[i].name = name;
     }
     if (result == WHIT_OK && mesh.count)
-        result =
-            model_add_mesh(gltf->scene, name, mesh.used, mesh.count, false, &gltf->meshes[index]);
+        result = model_add_mesh(gltf->scene, name, mesh.used, mesh.count, false, out);
     for (uint32_t i = 0; i < mesh.count; i++)
         part_finish(&mesh.parts[i]);
     free(mesh.parts);
     free(mesh.views);
     free(mesh.used);
+    return result;
+}
+
+/* Loads the mesh of a node with a skin, which has vertices of its own. */
+static whit_result load_skinned(struct geometry *geometry, uint32_t node)
+{
+    struct gltf *gltf = geometry->gltf;
+    struct gltf_skin skin = {0};
+    uint32_t mesh, index;
+    if (!gltf_node_mesh(gltf, node, &mesh, &index))
+        return WHIT_ERROR_INPUT;
+    if (mesh == SCENE_NONE || index == SCENE_NONE)
+        return WHIT_OK;
+    bool read = gltf_skin_read(gltf, index, &skin);
+    geometry->skin = &skin;
+    whit_result result = read ? load_mesh(geometry, mesh, &gltf->skinned[node]) : WHIT_ERROR_INPUT;
+    geometry->skin = NULL;
+    free(skin.moves);
     return result;
 }
 
@@ -336,7 +358,9 @@ whit_result gltf_load_meshes(struct gltf *gltf)
     whit_result result = WHIT_OK;
     for (uint32_t i = 0; i < gltf->mesh_count && result == WHIT_OK; i++)
         if (gltf->mesh_used[i])
-            result = load_mesh(&geometry, i);
+            result = load_mesh(&geometry, i, &gltf->meshes[i]);
+    for (uint32_t i = 0; i < gltf->order_count && result == WHIT_OK; i++)
+        result = load_skinned(&geometry, gltf->order[i]);
     if (result == WHIT_OK)
         note_dropped(&geometry);
     return result;

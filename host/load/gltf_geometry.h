@@ -10,6 +10,7 @@ struct gltf_primitive {
     uint32_t mode, material, vertex_count, corner_count;
     /* By enum import_array; a count of 0: absent. */
     struct gltf_accessor accessors[IMPORT_ARRAY_COUNT];
+    const json_t *attributes;
     const json_t *draco; /* the extension, or NULL */
 };
 

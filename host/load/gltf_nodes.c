@@ -112,19 +112,25 @@ static bool find_roots(struct gltf *gltf)
     return true;
 }
 
+bool gltf_node_mesh(const struct gltf *gltf, uint32_t node, uint32_t *mesh, uint32_t *skin)
+{
+    struct gltf_place at;
+    json_t *object;
+    return gltf_item(gltf, "nodes", node, &at, &object) &&
+           gltf_index(gltf, object, &at, "mesh", gltf->mesh_count, mesh) &&
+           gltf_index(gltf, object, &at, "skin", gltf_count(gltf, "skins"), skin);
+}
+
 whit_result gltf_plan_nodes(struct gltf *gltf)
 {
     if (!find_parents(gltf) || !check_loops(gltf) || !find_roots(gltf))
         return WHIT_ERROR_INPUT;
     add_descendants(gltf);
     for (uint32_t i = 0; i < gltf->order_count; i++) {
-        struct gltf_place at;
-        json_t *node;
-        uint32_t mesh;
-        if (!gltf_item(gltf, "nodes", gltf->order[i], &at, &node) ||
-            !gltf_index(gltf, node, &at, "mesh", gltf->mesh_count, &mesh))
+        uint32_t mesh, skin;
+        if (!gltf_node_mesh(gltf, gltf->order[i], &mesh, &skin))
             return WHIT_ERROR_INPUT;
-        if (mesh != SCENE_NONE)
+        if (mesh != SCENE_NONE && skin == SCENE_NONE)
             gltf->mesh_used[mesh] = true;
     }
     return WHIT_OK;
@@ -210,11 +216,14 @@ static whit_result add_instances(struct gltf *gltf, const json_t *extension,
     return result;
 }
 
+/* glTF ignores the transform of a node with a skin: the joints have placed its mesh. */
 static whit_result add_mesh(struct gltf *gltf, const json_t *object, const struct gltf_place *at,
-                            const char *name, uint32_t node)
+                            const char *name, uint32_t index)
 {
-    uint32_t mesh;
+    uint32_t mesh, node = gltf->nodes[index], skinned = gltf->skinned[index];
     json_t *instancing;
+    if (skinned != SCENE_NONE)
+        return add_instance(gltf, name, skinned, gltf->request->parent, NULL);
     if (!gltf_index(gltf, object, at, "mesh", gltf->mesh_count, &mesh) ||
         !gltf_extension(gltf, object, at, "EXT_mesh_gpu_instancing", &instancing))
         return WHIT_ERROR_INPUT;
@@ -375,40 +384,62 @@ static bool read_transform(const struct gltf *gltf, const json_t *object,
     return true;
 }
 
-static whit_result add_node(struct gltf *gltf, uint32_t index)
+/* Adds a node without what hangs on it; `at`: its place, which names it where the file does not. */
+static whit_result place_node(struct gltf *gltf, uint32_t index, const json_t *object,
+                              const struct gltf_place *at, const char *name)
 {
-    struct gltf_place at;
-    json_t *object;
-    const char *name;
-    if (!gltf_item(gltf, "nodes", index, &at, &object) ||
-        !gltf_string(gltf, object, &at, "name", &name))
-        return WHIT_ERROR_INPUT;
     uint32_t parent = gltf->parents[index];
     struct scene_node node;
-    if (!name || !*name)
-        name = at.text;
     scene_node_init(&node, name,
                     parent == SCENE_NONE ? gltf->request->parent : gltf->nodes[parent]);
-    if (!node.name || !read_transform(gltf, object, &at, &node)) {
+    if (!node.name || !read_transform(gltf, object, at, &node)) {
         whit_result result = node.name ? WHIT_ERROR_INPUT : WHIT_ERROR_MEMORY;
         free(node.name);
         return result;
     }
+    struct affine local = node.has_matrix
+                              ? node.matrix
+                              : affine_from_trs(node.translation, node.rotation, node.scale);
+    gltf->worlds[index] =
+        parent == SCENE_NONE ? local : affine_multiply(&gltf->worlds[parent], &local);
     gltf->nodes[index] = scene_add_node(gltf->scene, node);
-    if (gltf->nodes[index] == SCENE_NONE)
-        return WHIT_ERROR_MEMORY;
-    whit_result result = add_mesh(gltf, object, &at, name, gltf->nodes[index]);
+    return gltf->nodes[index] == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
+}
+
+static whit_result fill_node(struct gltf *gltf, uint32_t index, const json_t *object,
+                             const struct gltf_place *at, const char *name)
+{
+    whit_result result = add_mesh(gltf, object, at, name, index);
     if (result == WHIT_OK)
-        result = add_camera(gltf, object, &at, name, gltf->nodes[index]);
+        result = add_camera(gltf, object, at, name, gltf->nodes[index]);
     if (result == WHIT_OK)
-        result = add_light(gltf, object, &at, name, gltf->nodes[index]);
+        result = add_light(gltf, object, at, name, gltf->nodes[index]);
     return result;
 }
 
-whit_result gltf_add_nodes(struct gltf *gltf)
+static whit_result for_all(struct gltf *gltf,
+                           whit_result (*step)(struct gltf *, uint32_t, const json_t *,
+                                               const struct gltf_place *, const char *))
 {
     whit_result result = WHIT_OK;
-    for (uint32_t i = 0; i < gltf->order_count && result == WHIT_OK; i++)
-        result = add_node(gltf, gltf->order[i]);
+    for (uint32_t i = 0; i < gltf->order_count && result == WHIT_OK; i++) {
+        struct gltf_place at;
+        json_t *object;
+        const char *name;
+        if (!gltf_item(gltf, "nodes", gltf->order[i], &at, &object) ||
+            !gltf_string(gltf, object, &at, "name", &name))
+            return WHIT_ERROR_INPUT;
+        result = step(gltf, gltf->order[i], object, &at, name && *name ? name : at.text);
+    }
     return result;
+}
+
+whit_result gltf_place_nodes(struct gltf *gltf)
+{
+    return for_all(gltf, place_node);
+}
+
+whit_result gltf_fill_nodes(struct gltf *gltf)
+{
+    return for_all(gltf, fill_node);
 }

@@ -375,6 +375,108 @@ TEST_IN(quantized_attributes, fixture_begin, fixture_end)
     assert_true(fixture_noted("1 primitives of points or lines"));
 }
 
+/* --- skins ---------------------------------------------------------------------------------- */
+
+/* Writes a triangle whose node has skin 0, with these attributes beside POSITION and with `skins`.
+   Accessors: 1 normals, 2 joints (0, 1 and 1), 3 weights, 4 inverses of the joints' transforms, 5
+   joints of which the last is 9. Vertex 0 follows joint 0, vertex 1 both alike, vertex 2 joint 1.
+ */
+static const char *write_skin(const char *attributes, const char *skins)
+{
+    static const float floats[] = {0, 0, 0, 1, 0, 0, 0, 1, 0,                        /* 0 */
+                                   0, 0, 1, 0, 0, 1, 1, 1, 0,                        /* 36 */
+                                   1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0,  0, 1,  /* 72 */
+                                   1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}; /* 136 */
+    static const uint8_t bytes[] = {0,   7, 7, 7, 0,  1,  7, 7, 1,   7, 7, 7,        /* 200 */
+                                    255, 0, 0, 0, 99, 99, 0, 0, 255, 0, 0, 0,        /* 212 */
+                                    0,   7, 7, 7, 0,  1,  7, 7, 9,   7, 7, 7};       /* 224 */
+    uint8_t all[sizeof floats + sizeof bytes];
+    memcpy(all, floats, sizeof floats);
+    memcpy(all + sizeof floats, bytes, sizeof bytes);
+    put_data("s.bin", all, sizeof all);
+#define BYTES(offset, more)                                                                        \
+    "{\"bufferView\":0,\"byteOffset\":" #offset ",\"componentType\":5121,\"count\":3," more        \
+    "\"type\":\"VEC4\"}"
+    own_memory char *text = string_format(
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":236,\"uri\":"
+        "\"s.bin\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":236}],\"accessors\":"
+        "[" ACCESSOR(0, 3, "VEC3") "," ACCESSOR(36, 3, "VEC3") "," BYTES(200, "") "," BYTES(
+            212, "\"normalized\":true,") "," ACCESSOR(72, 2, "MAT4") "," BYTES(224,
+                                                                               "") "],"
+                                                                                   "\"meshes\":[{"
+                                                                                   "\"primitives"
+                                                                                   "\":[{"
+                                                                                   "\"attributes"
+                                                                                   "\":{"
+                                                                                   "\"POSITION\":"
+                                                                                   "0,\"NORMAL\":"
+                                                                                   "1%s}}]}],"
+                                                                                   "\"nodes\":[{"
+                                                                                   "\"mesh\":0,"
+                                                                                   "\"skin\":0,"
+                                                                                   "\"translation"
+                                                                                   "\":[100,0,0]}"
+                                                                                   ","
+                                                                                   "{\"translatio"
+                                                                                   "n\":[0,0,5],"
+                                                                                   "\"children\":"
+                                                                                   "[2]},"
+                                                                                   "{\"translatio"
+                                                                                   "n\":[0,1,0],"
+                                                                                   "\"scale\":[4,"
+                                                                                   "2,2]},{}],"
+                                                                                   "\"scenes\":[{"
+                                                                                   "\"nodes\":[0,"
+                                                                                   "1]}],"
+                                                                                   "\"skins\":[%"
+                                                                                   "s]}",
+        attributes, skins);
+    assert_non_null(text);
+    return put_text("s.gltf", text);
+}
+
+#define INFLUENCES ",\"JOINTS_0\":2,\"WEIGHTS_0\":3"
+#define SKIN       "{\"joints\":[1,2],\"inverseBindMatrices\":4}"
+
+TEST_IN(skins_stand_as_their_joints, fixture_begin, fixture_end)
+{
+    assert_int_equal(fixture_load(write_skin(INFLUENCES, SKIN)), WHIT_OK);
+    const struct scene_mesh *mesh = &fixture.scene->meshes[0];
+    const float expected[9] = {0, 0, 5, 2.5f, -0.5f, 5, 0, 1, 5};
+    for (uint32_t i = 0; i < 9; i++)
+        assert_float_equal(mesh->positions[3 * mesh->indices[i / 3] + i % 3], expected[i], 1e-6);
+    const float *normal = mesh->normals + 3 * (size_t)mesh->indices[2];
+    assert_float_equal(normal[1], 2 * normal[0], 1e-6);
+    assert_true(normal[0] > 0);
+    /* The transform of the mesh's own node does not count. */
+    assert_int_equal(fixture.scene->instances[0].node, SCENE_NONE);
+    assert_true(fixture_noted("1 drawn as their joints stand at rest"));
+}
+
+TEST_IN(joints_out_of_range_are_refused, fixture_begin, fixture_end)
+{
+    fixture_refused(write_skin(",\"JOINTS_0\":5,\"WEIGHTS_0\":3", SKIN),
+                    "meshes[0].primitives[0]: a vertex has joint 9, the skin has 2");
+}
+
+TEST_IN(joints_without_weights_are_refused, fixture_begin, fixture_end)
+{
+    fixture_refused(write_skin(",\"JOINTS_0\":2", SKIN), "has only one of JOINTS_0 and WEIGHTS_0");
+}
+
+TEST_IN(joints_that_are_not_drawn_are_refused, fixture_begin, fixture_end)
+{
+    fixture_refused(write_skin(INFLUENCES, "{\"joints\":[1,3]}"),
+                    "skins[0].joints[1]: node 3 is not in the scene");
+}
+
+TEST_IN(too_few_inverse_matrices_are_refused, fixture_begin, fixture_end)
+{
+    fixture_refused(write_skin(INFLUENCES, "{\"joints\":[1,2,1],\"inverseBindMatrices\":4}"),
+                    "skins[0]: has 3 joints and 2 inverseBindMatrices");
+}
+
 TEST_IN(accessors_past_their_view_are_refused, fixture_begin, fixture_end)
 {
     put_data("b.bin", data, 48);
