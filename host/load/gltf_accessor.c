@@ -218,9 +218,7 @@ bool gltf_check_elements(const struct gltf *gltf, const struct gltf_accessor *ac
 {
     struct gltf_place at = gltf_place("accessors[%u]", accessor->index);
     struct elements elements;
-    if (accessor->view != SCENE_NONE)
-        return find_elements(gltf, &at, accessor, &elements);
-    return accessor->sparse || gltf_fail(gltf, &at, "has neither a bufferView nor sparse values");
+    return accessor->view == SCENE_NONE || find_elements(gltf, &at, accessor, &elements);
 }
 
 bool gltf_read_floats(const struct gltf *gltf, uint32_t index, uint32_t components, float **out,

@@ -17,7 +17,8 @@ struct gltf_accessor {
 bool gltf_accessor(const struct gltf *gltf, uint32_t index, struct gltf_accessor *out);
 /* Whether its components are unsigned integers. */
 bool gltf_is_whole(const struct gltf_accessor *accessor);
-/* Whether all elements lie within the accessor's view. The functions below need that. */
+/* Whether all elements lie within the accessor's view; without a view they are zeros. The functions
+   below need that. */
 bool gltf_check_elements(const struct gltf *gltf, const struct gltf_accessor *accessor);
 /* Reads all elements as floats, normalized integers in [-1, 1], into rows of `width` floats. Where
    an element has fewer components, the rest of its row is 1. */

@@ -375,6 +375,24 @@ TEST_IN(quantized_attributes, fixture_begin, fixture_end)
     assert_true(fixture_noted("1 primitives of points or lines"));
 }
 
+TEST_IN(accessors_without_a_view_are_zeros, fixture_begin, fixture_end)
+{
+    put_data("b.bin", data, 36);
+    const char *path = put_text(
+        "z.gltf",
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"b.bin\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[" ACCESSOR(
+            0, 3, "VEC3") ",{\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}],"
+                          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_"
+                          "0\":1}}]}],"
+                          "\"nodes\":[{\"mesh\":0}]}");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = &fixture.scene->meshes[0];
+    assert_int_equal(mesh->triangle_count, 1);
+    for (uint32_t i = 0; i < 6; i++)
+        assert_float_equal(mesh->uvs[0][2 * mesh->indices[i / 2] + i % 2], 0, 0);
+}
+
 /* --- skins ---------------------------------------------------------------------------------- */
 
 /* Writes a triangle whose node has skin 0, with these attributes beside POSITION and with `skins`.
