@@ -297,8 +297,14 @@ static bool read_spot(const struct gltf *gltf, const json_t *object, const struc
         !gltf_number(gltf, spot, at, "innerConeAngle", &inner) ||
         !gltf_number(gltf, spot, at, "outerConeAngle", &outer))
         return false;
-    if (!(inner >= 0 && inner < outer && outer <= 2 * quarter + 1e-6))
-        return gltf_fail(gltf, at, "its cone angles %g and %g make no cone", inner, outer);
+    /* Equal angles make a hard edge. glTF does not allow them, but exporters write them. */
+    if (!(inner >= 0 && inner <= outer && outer <= 2 * quarter + 1e-6)) {
+        scene_note(gltf->scene, SCENE_NOTE_WARNING,
+                   "%s: %s: its cone angles %g and %g are cut to 0 <= inner <= outer <= pi/2",
+                   path_name(gltf->request->path), at->text, inner, outer);
+        outer = fmin(fmax(outer, 0), 2 * quarter);
+        inner = fmin(fmax(inner, 0), outer);
+    }
     out->cos_inner = (float)same_cos(inner);
     out->cos_outer = (float)same_cos(outer);
     return true;

@@ -221,6 +221,32 @@ TEST_IN(lights_keep_their_numbers, fixture_begin, fixture_end)
     assert_int_equal(light->node, 1);
 }
 
+static const struct scene_light *load_spot(const char *angles)
+{
+    own_memory char *members = string_format(
+        "\"nodes\":[{\"mesh\":0},{\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],"
+        "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\",\"spot\":{%s}}]}}",
+        angles);
+    assert_non_null(members);
+    return &load(members)->lights[0];
+}
+
+TEST_IN(equal_cone_angles_are_a_hard_edge, fixture_begin, fixture_end)
+{
+    const struct scene_light *light = load_spot("\"innerConeAngle\":0.4,\"outerConeAngle\":0.4");
+    assert_float_equal(light->cos_inner, cosf(0.4f), 1e-6);
+    assert_float_equal(light->cos_outer, light->cos_inner, 0);
+    assert_false(fixture_noted("cone angles"));
+}
+
+TEST_IN(wrong_cone_angles_are_cut, fixture_begin, fixture_end)
+{
+    const struct scene_light *light = load_spot("\"innerConeAngle\":1.8,\"outerConeAngle\":2");
+    assert_float_equal(light->cos_inner, 0, 1e-6);
+    assert_float_equal(light->cos_outer, 0, 1e-6);
+    assert_true(fixture_noted("lights[0]: its cone angles 1.8 and 2 are cut to"));
+}
+
 /* --- materials ------------------------------------------------------------------------------ */
 
 TEST_IN(materials_and_extensions, fixture_begin, fixture_end)
