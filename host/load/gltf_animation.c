@@ -51,8 +51,10 @@ static bool check_times(const struct gltf *gltf, const struct gltf_place *at, co
                         uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
-        bool later = i == 0 || times[i] > times[i - 1];
-        if (!(later && times[i] >= 0 && times[i] < 1e18f))
+        if (!(times[i] >= 0 && times[i] < 1e18f))
+            return gltf_fail(gltf, at, "its time of key %u is %g and should be at least 0", i,
+                             (double)times[i]);
+        if (i > 0 && !(times[i] > times[i - 1]))
             return gltf_fail(gltf, at, "its times do not increase (key %u)", i);
     }
     return true;

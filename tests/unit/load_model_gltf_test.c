@@ -11,6 +11,7 @@ static const float data[60] = {
     1,     2,      3, 4, 5, 6, 7, 8, 9,          /*  84: instances */
     0,     0,      0, 1, 0, 0, 0, 1, 0, 1, 0, 0, /* 120: rotations */
     0.25f, 0.125f, 1, 0, 1, 1,                   /* 168: texture coordinates */
+    -1,    1,      1,                            /* 192: times below 0; from 196 on: not rising */
 };
 
 static void append_base64(char *to, const uint8_t *from, size_t size)
@@ -30,33 +31,26 @@ static void append_base64(char *to, const uint8_t *from, size_t size)
 
 /* Writes a glTF with these members of the root, and a buffer, view, accessors and one mesh.
    Accessors: 0 positions, 1 times, 2 translations, 3 instances, 4 rotations, 5 texture
-   coordinates. */
+   coordinates, 6 and 7 wrong times. */
 static const char *write_gltf(const char *members)
 {
+    static const char *const accessors[] = {ACCESSOR(0, 3, "VEC3"),     ACCESSOR(36, 3, "SCALAR"),
+                                            ACCESSOR(48, 3, "VEC3"),    ACCESSOR(84, 3, "VEC3"),
+                                            ACCESSOR(120, 3, "VEC4"),   ACCESSOR(168, 3, "VEC2"),
+                                            ACCESSOR(192, 3, "SCALAR"), ACCESSOR(196, 3, "SCALAR")};
+    char joined[8 * 96] = "";
+    for (size_t i = 0; i < sizeof accessors / sizeof *accessors; i++)
+        strcat(strcat(joined, i ? "," : ""), accessors[i]);
     char base64[4 * sizeof data / 3 + 1];
     append_base64(base64, (const uint8_t *)data, sizeof data);
     own_memory char *text = string_format(
         "{\"asset\":{\"version\":\"2.0\"},"
         "\"buffers\":[{\"byteLength\":%zu,\"uri\":\"data:application/octet-stream;base64,%s\"}],"
         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],"
-        "\"accessors\":[" ACCESSOR(0, 3, "VEC3") "," ACCESSOR(36, 3, "SCALAR") "," ACCESSOR(
-            48, 3,
-            "VEC3") "," ACCESSOR(84, 3,
-                                 "VEC3") "," ACCESSOR(120, 3,
-                                                      "VEC4") "," ACCESSOR(168, 3,
-                                                                           "VEC2") "],"
-                                                                                   "\"meshes\":[{"
-                                                                                   "\"name\":"
-                                                                                   "\"tri\","
-                                                                                   "\"primitives\":"
-                                                                                   "[{"
-                                                                                   "\"attributes\":"
-                                                                                   "{"
-                                                                                   "\"POSITION\":0,"
-                                                                                   "\"TEXCOORD_0\":"
-                                                                                   "5}%s}]}],%s}",
-        sizeof data, base64, sizeof data, strstr(members, "\"materials\"") ? ",\"material\":0" : "",
-        members);
+        "\"accessors\":[%s],\"meshes\":[{\"name\":\"tri\",\"primitives\":[{\"attributes\":"
+        "{\"POSITION\":0,\"TEXCOORD_0\":5}%s}]}],%s}",
+        sizeof data, base64, sizeof data, joined,
+        strstr(members, "\"materials\"") ? ",\"material\":0" : "", members);
     assert_non_null(text);
     return put_text("a.gltf", text);
 }
@@ -560,6 +554,27 @@ TEST_IN(steps_stay_steps, fixture_begin, fixture_end)
     assert_float_equal(channel->values[7], 5, 0);
     assert_int_equal(scene->channels[1].interpolation, SCENE_LINEAR);
     assert_float_equal(scene->channels[1].values[3], 1, 0);
+}
+
+static void times_refused(const char *accessor, const char *reason)
+{
+    own_memory char *members = string_format(
+        ONE_NODE ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
+                 "\"path\":\"scale\"}}],\"samplers\":[{\"input\":%s,\"output\":2}]}]",
+        accessor);
+    assert_non_null(members);
+    refused(members, reason);
+}
+
+TEST_IN(negative_times_are_refused, fixture_begin, fixture_end)
+{
+    times_refused("6",
+                  "animations[0].channels[0]: its time of key 0 is -1 and should be at least 0");
+}
+
+TEST_IN(times_that_stand_still_are_refused, fixture_begin, fixture_end)
+{
+    times_refused("7", "animations[0].channels[0]: its times do not increase (key 1)");
 }
 
 TEST_IN(too_few_keys_are_refused, fixture_begin, fixture_end)
