@@ -159,7 +159,7 @@ static bool read_indices(const struct gltf *gltf, const struct gltf_primitive *p
 struct geometry {
     struct gltf *gltf;
     const struct gltf_skin *skin; /* of the mesh that is read, or NULL */
-    uint64_t lines_and_points, morphed;
+    uint64_t lines_and_points, morphed, tangents;
     bool drawn;
 };
 
@@ -241,6 +241,14 @@ static whit_result read_primitive(struct gltf *gltf, const struct gltf_primitive
     return material_of(gltf, primitive->material, &used->material);
 }
 
+static bool has_map_with_tangents(const struct gltf *gltf, const struct gltf_primitive *primitive)
+{
+    if (!primitive->accessors[IMPORT_TANGENTS].count || primitive->material == SCENE_NONE)
+        return false;
+    const struct scene_material *m = &gltf->scene->materials[gltf->materials[primitive->material]];
+    return m->textures[SCENE_SLOT_NORMAL].texture != SCENE_NONE;
+}
+
 static whit_result add_primitive(struct geometry *geometry, const struct gltf_place *at,
                                  const json_t *object, struct mesh *mesh)
 {
@@ -269,6 +277,7 @@ static whit_result add_primitive(struct geometry *geometry, const struct gltf_pl
     if (triangles_of(&primitive) == 0)
         return WHIT_OK;
     geometry->drawn = true;
+    geometry->tangents += has_map_with_tangents(gltf, &primitive);
     return read_primitive(gltf, &primitive, geometry->skin, mesh);
 }
 
@@ -348,6 +357,12 @@ static void note_dropped(const struct geometry *geometry)
     if (geometry->morphed)
         scene_note(scene, SCENE_NOTE_WARNING, "%s: morph targets are not applied (%llu primitives)",
                    name, (unsigned long long)geometry->morphed);
+    if (geometry->tangents)
+        scene_note(
+            scene, SCENE_NOTE_INFO,
+            "%s: tangents are not read, normal maps lie as their texture coordinates do (%llu "
+            "primitives)",
+            name, (unsigned long long)geometry->tangents);
     if (!geometry->drawn)
         scene_note(scene, SCENE_NOTE_WARNING, "%s: there are no triangles in it", name);
 }

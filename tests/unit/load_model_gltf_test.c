@@ -360,6 +360,29 @@ TEST_IN(texture_transforms, fixture_begin, fixture_end)
     assert_true(fixture_noted("no such.png"));
 }
 
+TEST_IN(tangents_under_a_map_are_noted_once, fixture_begin, fixture_end)
+{
+    static const uint8_t magenta[] = "P6 1 1 255 \377\0\377";
+    put_data("b.bin", data, sizeof data);
+    put_data("n.ppm", magenta, sizeof magenta - 1);
+    for (int mapped = 0; mapped < 2; mapped++) {
+        own_memory char *text = string_format(
+            "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%zu,\"uri\":"
+            "\"b.bin\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],\"accessors\":[%s,%s],"
+            "\"images\":[{\"uri\":\"n.ppm\"}],\"textures\":[{\"source\":0}],\"materials\":[{%s}],"
+            "\"meshes\":[{\"primitives\":[{\"material\":0,\"attributes\":{\"POSITION\":0,"
+            "\"TANGENT\":"
+            "1}},{\"material\":0,\"attributes\":{\"POSITION\":0,\"TANGENT\":1}}]}],"
+            "\"nodes\":[{\"mesh\":0}]}",
+            sizeof data, sizeof data, ACCESSOR(0, 3, "VEC3"), ACCESSOR(120, 3, "VEC4"),
+            mapped ? "\"normalTexture\":{\"index\":0}" : "");
+        assert_non_null(text);
+        assert_int_equal(fixture_load(put_text("t.gltf", text)), WHIT_OK);
+        assert_int_equal(fixture_noted("tangents are not read"), mapped);
+    }
+    assert_true(fixture_noted("texture coordinates do (2 primitives)"));
+}
+
 TEST_IN(texture_coordinates_grow_downwards, fixture_begin, fixture_end)
 {
     const struct scene *scene = load(ONE_NODE);
