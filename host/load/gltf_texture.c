@@ -47,6 +47,26 @@ static whit_result load_held_image(struct gltf *gltf, uint32_t index, const uint
     return result;
 }
 
+static whit_result load_data_image(struct gltf *gltf, uint32_t index, const char *uri, bool visible,
+                                   uint32_t *texture)
+{
+    static const uint8_t no_picture[1];
+    uint8_t *owned = NULL;
+    size_t size = 0;
+    whit_result result = gltf_decode_uri(uri, &owned, &size);
+    if (result == WHIT_ERROR_INPUT) {
+        scene_note(gltf->scene, SCENE_NOTE_WARNING, "%s: images[%u]: its data: URI is not base64",
+                   path_name(gltf->request->path), index);
+        if (!visible)
+            return WHIT_OK;
+        result = WHIT_OK;
+    }
+    if (result == WHIT_OK)
+        result = load_held_image(gltf, index, owned ? owned : no_picture, size, texture);
+    free(owned);
+    return result;
+}
+
 static whit_result load_image(struct gltf *gltf, uint32_t index, bool visible, uint32_t *texture)
 {
     struct gltf_place at;
@@ -61,16 +81,8 @@ static whit_result load_image(struct gltf *gltf, uint32_t index, bool visible, u
         return WHIT_ERROR_INPUT;
     if (is_file_uri(uri))
         return load_file_image(gltf, uri, visible, texture);
-    if (uri) {
-        uint8_t *owned = NULL;
-        whit_result result = gltf_decode_uri(uri, &owned, &size);
-        if (result == WHIT_ERROR_INPUT)
-            gltf_fail(gltf, &at, "its data: URI cannot be read");
-        if (result == WHIT_OK)
-            result = load_held_image(gltf, index, owned, size, texture);
-        free(owned);
-        return result;
-    }
+    if (uri)
+        return load_data_image(gltf, index, uri, visible, texture);
     if (view == SCENE_NONE) {
         gltf_fail(gltf, &at, "has neither uri nor bufferView");
         return WHIT_ERROR_INPUT;

@@ -383,6 +383,22 @@ TEST_IN(tangents_under_a_map_are_noted_once, fixture_begin, fixture_end)
     assert_true(fixture_noted("texture coordinates do (2 primitives)"));
 }
 
+TEST_IN(broken_data_images_are_magenta, fixture_begin, fixture_end)
+{
+    const struct scene *scene =
+        load(ONE_NODE ",\"images\":[{\"uri\":\"data:image/png;base64,iVBO\\nRw0K\"},"
+                      "{\"uri\":\"data:image/png,iVBO\"}],\"textures\":[{\"source\":0},"
+                      "{\"source\":1}],\"materials\":[{\"normalTexture\":{\"index\":1},"
+                      "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}]");
+    const struct scene_texture_use *uses = scene->materials[0].textures;
+    assert_int_equal(uses[SCENE_SLOT_NORMAL].texture, SCENE_NONE);
+    assert_int_not_equal(uses[SCENE_SLOT_DIFFUSE].texture, SCENE_NONE);
+    const uint8_t magenta[4] = {255, 0, 255, 255};
+    assert_memory_equal(scene->textures[uses[SCENE_SLOT_DIFFUSE].texture].rgba, magenta, 4);
+    assert_true(fixture_noted("images[0]: its data: URI is not base64"));
+    assert_true(fixture_noted("magenta takes its place"));
+}
+
 TEST_IN(texture_coordinates_grow_downwards, fixture_begin, fixture_end)
 {
     const struct scene *scene = load(ONE_NODE);
