@@ -179,15 +179,15 @@ static whit_result read_specular_glossiness(struct reading *r, const json_t *obj
         !gltf_floats(r->gltf, object, &r->at, "specularFactor", 3, specular) ||
         !number(r, object, "glossinessFactor", 0, 1, &glossiness))
         return WHIT_ERROR_INPUT;
-    float most = fminf(fmaxf(fmaxf(specular[0], specular[1]), fmaxf(specular[2], 0)), 1);
+    float max = fminf(fmaxf(fmaxf(specular[0], specular[1]), fmaxf(specular[2], 0)), 1);
     bool textured = out->textures[SCENE_SLOT_SPECULAR].texture != SCENE_NONE;
     for (int i = 0; i < 3; i++) {
-        out->diffuse[i] = fmaxf(diffuse[i], 0) * (textured ? 1 : 1 - most);
+        out->diffuse[i] = fmaxf(diffuse[i], 0) * (textured ? 1 : 1 - max);
         out->specular[i] = fmaxf(specular[i], 0) / (root * root);
     }
     out->metallic = 0;
     out->roughness = 1 - glossiness;
-    out->specular_level = most > 0; /* 0: no reflection at grazing angles either */
+    out->specular_level = max > 0; /* 0: no reflection at grazing angles either */
     out->opacity = fminf(out->opacity, fminf(fmaxf(diffuse[3], 0), 1));
     return WHIT_OK;
 }
