@@ -213,6 +213,7 @@ static whit_result report_from(const whit_renderer *renderer, const struct probe
         .differing = from->differing,
         .calls = calls,
         .call_count = call_count,
+        .shaded = shader_has(renderer->params.shader, WHIT_HOOK_SHADE),
     };
     memcpy(report->color, from->color, sizeof report->color);
     whit_image pixel = {.image = {.width = 1, .height = 1, .channels = 4, .pixels = report->color}};

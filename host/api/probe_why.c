@@ -140,5 +140,8 @@ void whit_probe_why(const whit_probe_report *report, const whit_scene *scene, ch
         return;
     }
     say_parts(report, &to);
-    say_lights(report, scene, &to);
+    if (report->shaded)
+        put(&to, "; which lights reach it is up to shade()");
+    else
+        say_lights(report, scene, &to);
 }

@@ -7,6 +7,7 @@
 #include "shader/disassemble.h"
 #include "shader/pack.h"
 #include "shader/program.h"
+#include "shader/sliders.h"
 #include "whit/whit_program.h"
 
 struct whit_shader_compiler {
@@ -253,6 +254,11 @@ void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info)
 }
 
 /* The kernel of the index-th code that the shader has; SHADER_KERNEL_COUNT: there is none. */
+bool whit_shader_keep_sliders(const whit_shader *shader, char *sliders)
+{
+    return shader_sliders_keep(shader, sliders);
+}
+
 static enum shader_kernel find_kernel(const whit_shader *shader, uint32_t index)
 {
     uint32_t kernel = 0;

@@ -6,6 +6,7 @@
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
 #include <sys/inotify.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/array.h"
@@ -100,9 +101,9 @@ void watch_clear(struct watch *watch)
     (void)watch_changed(watch); /* discards earlier events */
 }
 
-void watch_add(struct watch *watch, const char *path)
+static void add_one(struct watch *watch, const char *path)
 {
-    char *folder = watch && !is_input(path) ? path_folder(path) : NULL;
+    char *folder = path_folder(path);
     if (!folder)
         return;
     struct watched file = {
@@ -114,6 +115,19 @@ void watch_add(struct watch *watch, const char *path)
     if (file.folder < 0 || !file.name ||
         !ARRAY_PUSH(watch->files, watch->count, watch->capacity, file))
         free(file.name);
+}
+
+void watch_add(struct watch *watch, const char *path)
+{
+    struct stat info;
+    if (!watch || is_input(path))
+        return;
+    add_one(watch, path);
+    bool is_link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
+    char *target = is_link ? realpath(path, NULL) : NULL;
+    if (target)
+        add_one(watch, target);
+    free(target);
 }
 
 static bool is_watched(const struct watch *watch, const struct inotify_event *event)

@@ -1,5 +1,6 @@
 /* Annotations: lines of a user's file that begin with //@. */
 #include <ctype.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -113,6 +114,13 @@ static bool read_slider_toggle(struct line *line, whit_slider *slider)
         slider->value[0] = word[1] == 'n';
         return true;
     }
+    static const char *const others[] = {"true", "false", "0", "1", "yes", "no"};
+    for (size_t i = 0; fits && i < sizeof others / sizeof *others; ++i) {
+        if (strcmp(word, others[i]) == 0) {
+            complain(line, "a toggle is on or off, not `%s`", word);
+            return false;
+        }
+    }
     line->at = rest; /* no value: it begins switched off */
     return true;
 }
@@ -133,6 +141,12 @@ static bool read_slider_choice(struct line *line, whit_slider *slider,
             complain(line, "a choice has up to %d words of letters, digits and _, not `%.60s`",
                      SHADER_WORDS_MAX, word);
             return false;
+        }
+        for (uint32_t i = 0; i < slider->word_count; ++i) {
+            if (strcmp(texts->words[i], word) == 0) {
+                complain(line, "a choice has the word `%s` twice", word);
+                return false;
+            }
         }
         texts->words[slider->word_count++] = word;
         word = comma ? comma + 1 : NULL;
@@ -188,9 +202,38 @@ static bool is_function(const char *name)
     return false;
 }
 
+/* Whether GLSL has or reserves the word (The OpenGL Shading Language 4.60, 3.6 Keywords). */
+static bool is_keyword(const char *name)
+{
+    static const char words[] =
+        " active asm atomic_uint attribute bool break buffer case cast centroid class coherent "
+        "common const continue default demote discard do double else enum extern external false "
+        "filter fixed flat float for fvec2 fvec3 fvec4 goto half highp hvec2 hvec3 hvec4 if in "
+        "inline inout input int interface invariant layout long lowp mediump namespace noinline "
+        "noperspective out output packed partition patch precise precision public readonly "
+        "resource restrict return sample shared short sizeof smooth static struct subroutine "
+        "superp switch template this true typedef uint uniform union unsigned using varying void "
+        "volatile while writeonly ";
+    static const char *const types[] = {"vec", "bvec", "ivec",    "uvec",  "dvec",
+                                        "mat", "dmat", "sampler", "image", "texture"};
+    char word[SHADER_NAME_BYTES + 2];
+    snprintf(word, sizeof word, " %s ", name);
+    for (size_t i = 0; i < sizeof types / sizeof *types; ++i) { /* as in mat3, mat2x4, image2D */
+        size_t length = strlen(types[i]);
+        if (strncmp(name, types[i], length) == 0 && isdigit((unsigned char)name[length]) &&
+            (!name[length + 1] || strchr("xD", name[length + 1])))
+            return true;
+    }
+    return strstr(words, word);
+}
+
 static bool is_new_name(const struct line *line, const char *name)
 {
     const whit_shader *shader = line->shader;
+    if (is_keyword(name)) {
+        complain(line, "`%s` is a word of GLSL: another name is needed", name);
+        return false;
+    }
     if (is_function(name)) {
         complain(line, "`%s` is a function of whit's: another name is needed", name);
         return false;
@@ -313,7 +356,11 @@ static void read_box(struct line *line)
 static void read_fuel(struct line *line)
 {
     double fuel;
-    if (read_number(line, "fuel", 1.0, SHADER_FUEL_MAX, &fuel))
+    if (!read_number(line, "fuel", 1.0, SHADER_FUEL_MAX, &fuel))
+        return;
+    if (floor(fuel) != fuel)
+        complain(line, "fuel is a whole number, not %g", fuel);
+    else
         line->shader->fuel = (uint32_t)fuel;
 }
 

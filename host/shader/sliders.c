@@ -129,6 +129,27 @@ static bool read_pair(const whit_shader *shader, char *pair, float *values, char
     return refuse_name(shader, pair, why, why_bytes);
 }
 
+bool shader_sliders_keep(const whit_shader *shader, char *text)
+{
+    char *to = text, *from = text;
+    float values[SHADER_SLIDERS_MAX];
+    while (*from) {
+        char pair[SHADER_NAME_BYTES + SHADER_HELP_BYTES], why[SHADER_REASON_BYTES];
+        size_t length = strcspn(from, ",");
+        snprintf(pair, sizeof pair, "%.*s", (int)length, from);
+        if (length < sizeof pair && read_pair(shader, pair, values, why, sizeof why)) {
+            if (to > text)
+                *to++ = ',';
+            memmove(to, from, length);
+            to += length;
+        }
+        from += length + (from[length] == ',');
+    }
+    bool dropped = to < from;
+    *to = '\0';
+    return dropped;
+}
+
 bool shader_sliders_read(const whit_shader *shader, const char *text, bool skip,
                          float values[SHADER_SLIDERS_MAX], char *why, size_t why_bytes)
 {

@@ -338,6 +338,50 @@ static whit_result check_token(struct reading *r, uint32_t file, struct scan *sc
     return WHIT_OK;
 }
 
+static void blank(char *from, const char *to)
+{
+    for (; from < to; ++from) {
+        if (*from != '\n' && *from != '\r')
+            *from = ' ';
+    }
+}
+
+/* Whether the directive `#if` is followed by 0 alone. Reads up to the end of its line. */
+static bool is_if_zero(struct scan *scan)
+{
+    return scan_is(scan, SCAN_DIRECTIVE, "if") && scan_next(scan) &&
+           scan_is(scan, SCAN_WORD, "0") && scan_next(scan) && scan->kind == SCAN_NEWLINE;
+}
+
+/* Blanks what stands between `#if 0` and its #elif, #else or #endif, so that functions, includes
+   and annotations there mean as little to whit as to the compiler. Other conditions are known to
+   the compiler alone. */
+static void blank_if_zero(struct shader_file *file)
+{
+    struct scan scan;
+    char *from = NULL; /* what is to be blanked */
+    uint32_t depth = 0;
+    scan_begin(&scan, file->text, file->bytes);
+    while (scan_next(&scan)) {
+        if (scan.kind != SCAN_DIRECTIVE)
+            continue;
+        bool opens = strncmp(scan.text, "if", 2) == 0, ends = strcmp(scan.text, "endif") == 0;
+        if (!from) {
+            from = is_if_zero(&scan) ? file->text + (scan.at - file->text) : NULL;
+            depth = 0;
+        } else if (depth == 0 && (ends || strncmp(scan.text, "el", 2) == 0)) {
+            const char *to = scan.at;
+            while (*to != '#')
+                --to;
+            blank(from, to);
+            from = NULL;
+        } else {
+            depth += opens;
+            depth -= ends;
+        }
+    }
+}
+
 static whit_result check_file(struct reading *r, uint32_t index)
 {
     struct conditions open = {.count = 0};
@@ -389,6 +433,8 @@ static whit_result read_one(struct reading *r, const struct place *place, char *
     r->below[*index] = 1;
     r->open[r->open_count++] = *index;
     result = check_bytes(r, &text->files[*index]);
+    if (result == WHIT_OK)
+        blank_if_zero(&text->files[*index]);
     if (result == WHIT_OK)
         result = check_file(r, *index);
     r->open_count--;

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -29,6 +30,29 @@ static void watch_files(struct view *view)
         watch_add(view->shaders.watch, view->settings.shader);
     for (uint32_t i = 0; shown && i < shown->info.file_count; ++i)
         watch_add(view->shaders.watch, shown->info.files[i]);
+}
+
+/* Also watches the files that errors name, one error a line: "FILE:LINE: ...", and a file that an
+   #include names in vain. The failed version may include files that the shown one does not. */
+static void watch_broken(struct view *view)
+{
+    static const char include[] = "#include \"";
+    char errors[SESSION_ERRORS], *rest = NULL;
+    snprintf(errors, sizeof errors, "%s", view->shaders.errors);
+    for (char *line = strtok_r(errors, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+        size_t length = strcspn(line, ":");
+        char *name = line[length] ? strstr(line + length + 1, include) : NULL;
+        line[length] = '\0';
+        watch_add(view->shaders.watch, line);
+        if (!name)
+            continue;
+        name += strlen(include);
+        name[strcspn(name, "\"")] = '\0';
+        char *path = path_beside(line, name);
+        if (path)
+            watch_add(view->shaders.watch, path);
+        free(path);
+    }
 }
 
 void shaders_begin(struct view *view)
@@ -70,6 +94,18 @@ static void say_no_aov(struct view *view)
     log_warning(&view->log, "%s", view->toast);
 }
 
+/* Drops values of sliders that the file no longer has or takes, so that pictures and lines for
+   `whit render` do not name them. */
+static void keep_sliders(struct view *view)
+{
+    const struct shader_ref *shown = view->shaders.shown;
+    if (!shown)
+        return;
+    whit_shader_keep_sliders(shown->shader, view->frame.settings.sliders);
+    if (whit_shader_keep_sliders(shown->shader, view->settings.sliders))
+        view->dirty = true;
+}
+
 void shaders_take(struct view *view)
 {
     struct shaders *shaders = &view->shaders;
@@ -83,6 +119,7 @@ void shaders_take(struct view *view)
     shaders->shown = shader_ref_take(view->frame.shader);
     shaders->errors[0] = shaders->line[0] = '\0';
     watch_files(view);
+    keep_sliders(view);
     say_no_aov(view);
 }
 
@@ -100,6 +137,8 @@ bool shaders_refuse(struct view *view)
         return false;
     snprintf(shaders->errors, sizeof shaders->errors, "%s", view_failure(view));
     shaders->errors_reload = view->settings.shader_reload;
+    if (!whit_image_format_known(view->settings.shader, false))
+        watch_broken(view);
     view_log_failure(view);
     return true;
 }

@@ -152,6 +152,9 @@ char *whit_spirv_text(const uint32_t *words, size_t bytes);
 /* The file that `whit shader new` writes: whit's own function, with comments on what it may use.
    NULL: there is no such hook, or no memory. To be released by whit_memory_destroy. */
 char *whit_shader_template(whit_hook hook);
+/* Removes from `sliders`, as in whit_renderer_params.sliders, what the shader has no use for. True:
+   something was removed. */
+bool whit_shader_keep_sliders(const whit_shader *shader, char *sliders);
 
 /* ---- Parts of scenes, and faults in them ---- */
 

@@ -292,6 +292,31 @@ END
     check "U subtracts the version before" test "$(value subtracted compare.b.pixels)" = "$(value color frame.pixels)"
 fi
 
+# ---- A new include that is broken, then mended; a slider that a version no longer has; a link ----
+
+if part 2 4; then
+    mkdir real
+    printf '//@ slider k 0 1 0.5\nvec3 post(ivec2 at, vec3 color) { return color * k; }\n' >real/l.glsl
+    ln -s ../real/l.glsl live/l.glsl
+    printf '#include "new.glsl"\nvec3 post(ivec2 at, vec3 color) { return twice(color); }\n' >with.new
+    steps >"$OUT/replay" <<END
+start: press F2 x2, press Tab | error =
+moved: choose k | render has --set k=
+until error
+lacks: | error has new.glsl | render has --set k=
+until error = $NONE
+mended: | frame.pixels not as start
+END
+    on_state() {
+        case $1 in
+        *'"at":"moved"'*) cp with.new real/l.glsl ;;
+        *'"at":"lacks"'*) echo 'vec3 twice(vec3 c) { return 2.0 * c; }' >live/new.glsl ;;
+        esac
+    }
+    follow "a new include" cube.json --size 320x240 --ui-scale 0.5 --shader live/l.glsl
+    check "a slider that is gone is not named" test "$(value mended render | grep -c -e --set)" -eq 0
+fi
+
 # ---- After harmful saves the window goes on with the last good picture ----
 
 if part 1 4; then

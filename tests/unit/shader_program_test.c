@@ -116,6 +116,36 @@ TEST(values_that_are_none_are_refused_or_skipped)
     shader_text_free(&shader.text);
 }
 
+TEST(values_of_another_version_are_dropped)
+{
+    whit_shader shader;
+    char text[] = "gone=1,bands=4.5,mode=hot,on=off,rim=red,bands=9", none[] = "on=off";
+    assert_int_equal(read_text(whole, &shader), WHIT_OK);
+    assert_true(shader_sliders_keep(&shader, text));
+    assert_string_equal(text, "bands=4.5,on=off");
+    assert_false(shader_sliders_keep(&shader, text));
+    assert_false(shader_sliders_keep(&shader, none));
+    shader_text_free(&shader.text);
+}
+
+/* What `#if 0` leaves out is nothing for whit either; images2D is no word of GLSL. */
+TEST(code_that_is_left_out_counts_for_nothing)
+{
+    whit_shader shader;
+    assert_int_equal(read_text("#if 0\n//@ slider a 0 1 0\n#include \"nowhere.glsl\"\n#if 1\n"
+                               "//@ toggle b\n#endif\nvec3 post(int at) { return at; }\n#else\n"
+                               "//@ toggle images2D\n#endif\n#if 1\n//@ toggle c\n#endif\n"
+                               "vec3 miss(vec3 dir) { return dir; }\n",
+                               &shader),
+                     WHIT_OK);
+    assert_int_equal(shader.slider_count, 2);
+    assert_string_equal(shader.sliders[0].name, "images2D");
+    assert_int_equal(shader.slider_texts[0].line, 9);
+    assert_string_equal(shader.sliders[1].name, "c");
+    assert_false(shader_text_defines(&shader.text, "post", NULL, NULL));
+    shader_text_free(&shader.text);
+}
+
 TEST(lines_that_are_none_are_refused_with_their_line)
 {
     static const struct {
@@ -132,6 +162,12 @@ TEST(lines_that_are_none_are_refused_with_their_line)
                  {"color x #12345", "#ffcc88"},
                  {"choice x", "names its words"},
                  {"choice x a,,b", "up to 16 words"},
+                 {"choice x a,b,a", "the word `a` twice"},
+                 {"slider float 0 1 0", "is a word of GLSL"},
+                 {"toggle mat2x3", "is a word of GLSL"},
+                 {"color sample #ffffff", "is a word of GLSL"},
+                 {"toggle x true", "on or off, not `true`"},
+                 {"fuel 1.5", "a whole number, not 1.5"},
                  {"fuel 0", "from 1 to 30000"},
                  {"fuel 30001", "from 1 to 30000"},
                  {"fuel many", "from 1 to 30000"},
