@@ -85,6 +85,17 @@ static uint32_t parse_numbers(char **at, float *out, uint32_t max)
     return count;
 }
 
+size_t mtl_find_comment(const char *line, size_t bytes, bool has_names)
+{
+    for (size_t at = 0; at < bytes; at++) {
+        bool alone =
+            at == 0 || (is_blank(line[at - 1]) && (at + 1 == bytes || is_blank(line[at + 1])));
+        if (line[at] == '#' && (alone || !has_names))
+            return at;
+    }
+    return bytes;
+}
+
 /* --- notes ---------------------------------------------------------------------------------- */
 
 struct reader {
@@ -343,6 +354,7 @@ static bool begin_entry(struct reader *reader, char *rest)
 
 static bool read_line(struct reader *reader, char *line, bool *in_entry)
 {
+    line[mtl_find_comment(line, strlen(line), true)] = 0;
     char *rest = line;
     char *keyword = next_word(&rest);
     if (!*keyword || *keyword == '#')

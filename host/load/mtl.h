@@ -46,6 +46,9 @@ struct mtl_library {
     uint32_t count, capacity;
 };
 
+/* Offset of the comment in a line of an OBJ or MTL, or `bytes`. In a line that `has_names`, a `#`
+   within words is none: 3ds Max names materials `Material #25`. */
+size_t mtl_find_comment(const char *line, size_t bytes, bool has_names);
 /* Adds the entries of `text` (zero-terminated) to the library. Each keyword that is not understood
    is noted once in the scene. False when memory runs out. */
 WHIT_CHECK bool mtl_parse(struct scene *scene, const char *path, const char *text,

@@ -61,74 +61,68 @@ static bool from_utf16(uint8_t **data, size_t *size_bytes)
     return true;
 }
 
-/* Finds the next decimal point without a digit before it, from `at` on, in lines of vertices; NULL:
-   there is none. */
-static const uint8_t *next_bare_point(const uint8_t *at, const uint8_t *end)
+static bool is_blank(uint8_t c)
 {
-    while (at < end) {
-        const uint8_t *line_end = memchr(at, '\n', (size_t)(end - at));
-        if (!line_end)
-            line_end = end;
-        const uint8_t *first = at;
-        while (first < line_end && (*first == ' ' || *first == '\t'))
-            first++;
-        bool inside = first < line_end && *first == 'v';
-        const uint8_t *point = inside ? memchr(first, '.', (size_t)(line_end - first)) : NULL;
-        while (point) {
-            bool starts = point[-1] == ' ' || point[-1] == '\t';
-            if (starts && point + 1 < line_end && point[1] >= '0' && point[1] <= '9')
-                return point;
-            point = memchr(point + 1, '.', (size_t)(line_end - point - 1));
-        }
-        at = line_end + 1;
-    }
-    return NULL;
+    return c == ' ' || c == '\t';
 }
 
-/* Like next_bare_point, but `at` may stand inside a line. */
-static const uint8_t *next_point_in(const uint8_t *start, const uint8_t *at, const uint8_t *end)
+static uint32_t count_words(const uint8_t *at, const uint8_t *end)
 {
-    while (at > start && at[-1] != '\n' && at < end) {
-        const uint8_t *point = memchr(at, '.', (size_t)(end - at));
-        const uint8_t *line_end = memchr(at, '\n', (size_t)(end - at));
-        if (!point || (line_end && point > line_end)) {
-            if (!line_end)
-                return NULL;
-            at = line_end + 1;
-            break;
-        }
-        bool starts = point[-1] == ' ' || point[-1] == '\t';
-        if (starts && point + 1 < end && point[1] >= '0' && point[1] <= '9')
-            return point;
-        at = point + 1;
+    uint32_t words = 0;
+    for (bool blank = true; at < end; at++) {
+        words += blank && !is_blank(*at);
+        blank = is_blank(*at);
     }
-    return next_bare_point(at, end);
+    return words;
 }
 
-static bool add_zeros(uint8_t **data, size_t *size_bytes)
+/* Copies [from, end) with a zero before each decimal point that begins a number. */
+static uint8_t *copy_numbers(uint8_t *to, const uint8_t *from, const uint8_t *end)
 {
-    const uint8_t *start = *data, *end = start + *size_bytes;
-    const uint8_t *first = next_bare_point(start, end);
-    size_t count = 0;
-    for (const uint8_t *at = first; at; at = next_point_in(start, at + 1, end))
-        count++;
-    if (count == 0)
-        return true;
-    uint8_t *out = array_alloc(*size_bytes + count + 1, 1), *to = out;
-    if (!out)
-        return false;
-    const uint8_t *from = start;
-    for (const uint8_t *at = first; at; at = next_point_in(start, at + 1, end)) {
-        memcpy(to, from, (size_t)(at - from));
-        to += at - from;
-        *to++ = '0';
-        from = at;
+    for (const uint8_t *at = from; at < end; at++) {
+        bool begins = *at == '.' && (at == from || is_blank(at[-1]));
+        if (begins && at + 1 < end && at[1] >= '0' && at[1] <= '9')
+            *to++ = '0';
+        *to++ = *at;
     }
-    memcpy(to, from, (size_t)(end - from) + 1);
-    free(*data);
-    *data = out;
-    *size_bytes += count;
-    return true;
+    return to;
+}
+
+/* Copies the line at *from without its comment and the blanks around it, joined with the lines that
+   a backslash at its end continues it by. As many line ends follow as it had. */
+static uint8_t *clean_line(const uint8_t **from, const uint8_t *end, uint8_t *to)
+{
+    const uint8_t *at = *from;
+    uint8_t *start = to;
+    uint32_t lines = 0;
+    bool joined = true, has_numbers = false;
+    for (; joined && at < end; lines++) {
+        const uint8_t *stop = at;
+        while (stop < end && *stop != '\n' && *stop != '\r')
+            stop++;
+        bool pair = stop + 1 < end && stop[0] == '\r' && stop[1] == '\n';
+        const uint8_t *next = stop + (pair ? 2 : stop < end);
+        while (at < stop && is_blank(*at))
+            at++;
+        if (lines == 0)
+            has_numbers = at < stop && memchr("vflp", *at, 4);
+        else
+            *to++ = ' ';
+        stop = at + mtl_find_comment((const char *)at, (size_t)(stop - at), !has_numbers);
+        while (stop > at && is_blank(stop[-1]))
+            stop--;
+        joined = stop > at && stop[-1] == '\\';
+        to = copy_numbers(to, at, stop - joined);
+        at = next;
+    }
+    bool is_uv = to - start > 2 && start[0] == 'v' && start[1] == 't' && is_blank(start[2]);
+    if (is_uv && count_words(start, to) == 2) {
+        memcpy(to, " 0", 2);
+        to += 2;
+    }
+    memset(to, '\n', lines);
+    *from = at;
+    return to + lines;
 }
 
 bool obj_repair_text(uint8_t **data, size_t *size_bytes)
@@ -136,40 +130,39 @@ bool obj_repair_text(uint8_t **data, size_t *size_bytes)
     const uint8_t *text = *data;
     bool wide = *size_bytes >= 2 &&
                 ((text[0] == 0xfe && text[1] == 0xff) || (text[0] == 0xff && text[1] == 0xfe));
-    return (!wide || from_utf16(data, size_bytes)) && add_zeros(data, size_bytes);
+    if (wide && !from_utf16(data, size_bytes))
+        return false;
+    const uint8_t *at = *data, *end = at + *size_bytes;
+    if (*size_bytes >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0)
+        at += 3;
+    /* Half as much more at most: `vt .5` and its line end become `vt 0.5 0`. The last line may lack
+       its line end. */
+    uint8_t *out = array_alloc(*size_bytes + *size_bytes / 2 + 4, 1), *to = out;
+    if (!out)
+        return false;
+    while (at < end)
+        to = clean_line(&at, end, to);
+    *to = 0;
+    free(*data);
+    *size_bytes = (size_t)(to - out);
+    uint8_t *fitted = realloc(out, *size_bytes + 1);
+    *data = fitted ? fitted : out;
+    return true;
 }
 
 /* --- faces ---------------------------------------------------------------------------------- */
 
-static uint32_t count_words(const char *at, const char *end)
-{
-    uint32_t words = 0;
-    for (bool blank = true; at < end; at++) {
-        bool was_blank = blank;
-        blank = *at == ' ' || *at == '\t' || *at == '\r' || *at == '\\';
-        words += was_blank && !blank;
-    }
-    return words;
-}
-
 uint32_t obj_longest_face(const char *text)
 {
-    uint32_t longest = 0, max = 0, first = 0, words = 0;
-    bool joined = false;
+    uint32_t longest = 0, max = 0;
     for (uint32_t line = 1; *text; line++) {
-        const char *end = text + strcspn(text, "\n"), *last = end;
-        if (!joined) {
-            first = text[strspn(text, " \t")] == 'f' ? line : 0;
-            words = 0;
-        }
-        words += count_words(text, end);
-        if (first && words > max) {
+        const char *end = text + strcspn(text, "\n");
+        uint32_t words =
+            *text == 'f' ? count_words((const uint8_t *)text, (const uint8_t *)end) : 0;
+        if (words > max) {
             max = words;
-            longest = first;
+            longest = line;
         }
-        while (last > text && last[-1] == '\r')
-            last--;
-        joined = last > text && last[-1] == '\\';
         text = end + (*end != 0);
     }
     return longest;
@@ -251,25 +244,16 @@ static whit_result read_named(struct scene *scene, const char *obj_path, const c
     return result;
 }
 
-/* A copy of what follows `mtllib` on the line [at, end), trimmed; NULL for other lines, and when
-   memory runs out. */
+/* A copy of what follows `mtllib` on the line [at, end); NULL for other lines, and when memory runs
+   out. */
 static char *names_on_line(const char *at, const char *end, bool *is_library)
 {
-    while (at < end && (*at == ' ' || *at == '\t'))
-        at++;
     *is_library = end - at > 7 && memcmp(at, "mtllib", 6) == 0 && (at[6] == ' ' || at[6] == '\t');
     if (!*is_library)
         return NULL;
-    for (at += 6; at < end && (*at == ' ' || *at == '\t');)
+    for (at += 6; *at == ' ' || *at == '\t';)
         at++;
-    while (end > at && (end[-1] == ' ' || end[-1] == '\t' || end[-1] == '\r'))
-        end--;
-    char *names = array_alloc((size_t)(end - at) + 1, 1);
-    if (names) {
-        memcpy(names, at, (size_t)(end - at));
-        names[end - at] = 0;
-    }
-    return names;
+    return string_format("%.*s", (int)(end - at), at);
 }
 
 static whit_result read_sibling(struct scene *scene, const char *path, struct mtl_library *library,

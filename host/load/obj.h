@@ -6,13 +6,15 @@
 
 #include "load/mtl.h"
 
-/* Converts UTF-16 to UTF-8, and adds the zero to numbers without a digit before the point (` .5`),
-   which assimp 5.2 does not read as numbers. Replaces *data (malloc'ed, zero-terminated). False
-   when memory runs out; *data is then intact. */
+/* Writes the text as UTF-8 in the lines that assimp 5.2 and the functions below read: without a
+   byte order mark, comments and blanks around a line, with \n behind every line and lines joined
+   that a backslash continues (each line keeps its number), with a zero in ` .5`, and with a second
+   coordinate, 0, where a `vt` has one. Replaces *data (malloc'ed, zero-terminated). False when
+   memory runs out; *data is then still to be freed. */
 WHIT_CHECK bool obj_repair_text(uint8_t **data, size_t *size_bytes);
 
-/* The line number, from 1, on which the face with the most words starts; 0: there is no face. A
-   line that ends with a backslash continues on the next one. */
+/* The line number, from 1, of the face with the most words in a repaired text; 0: there is no
+   face. */
 uint32_t obj_longest_face(const char *text);
 
 /* Reads the material libraries that the text names; if it names none, the one that is called like

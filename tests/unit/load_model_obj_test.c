@@ -152,6 +152,33 @@ TEST_IN(wide_text, fixture_begin, fixture_end)
     assert_int_equal(only_mesh()->triangle_count, 1);
 }
 
+TEST_IN(lines_are_cleaned, fixture_begin, fixture_end)
+{
+    put_text("a.mtl", "newmtl red # x\nKd 1 0 0\nnewmtl Material #25\nKd 0 1 0\n");
+    const char *path = put_text(
+        "a.obj", "\xef\xbb\xbfmtllib a.mtl\n v 0 0 0 # a\n\tv 1 0 0\nv 1 1 0\nv 0 1 0#b\n"
+                 "# C:\\max\\\nvt 0\nvt .5 # c\nusemtl red # hm\n f 1/1 2/2 \\\n3/1 # end\n"
+                 "usemtl Material #25\nf 1/1 3/2 4/1 # 2\n");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh();
+    assert_int_equal(mesh->triangle_count, 2);
+    assert_float_equal(mesh->uvs[0][2 * mesh->indices[1]], 0.5, 0);
+    assert_float_equal(material_named(fixture.scene, "red")->diffuse[1], 0, 0);
+    assert_float_equal(material_named(fixture.scene, "Material #25")->diffuse[1], 1, 0);
+    assert_int_equal(fixture.scene->note_count, 0);
+}
+
+TEST_IN(lines_may_end_in_a_return_alone, fixture_begin, fixture_end)
+{
+    put_text("a.mtl", "newmtl red\rKd 1 0 0\r");
+    const char *path =
+        put_text("a.obj", "mtllib a.mtl\rv 0 0 0\rv 1 0 0\rv 0 1 0\rusemtl red\rf 1 2 3");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    assert_int_equal(only_mesh()->triangle_count, 1);
+    assert_float_equal(material_named(fixture.scene, "red")->diffuse[1], 0, 0);
+    assert_int_equal(fixture.scene->note_count, 0);
+}
+
 TEST_IN(lines_and_points_are_noted, fixture_begin, fixture_end)
 {
     const char *path = put_text("a.obj", QUAD "f 1 2 3\nl 1 2 3\np 4\n");
