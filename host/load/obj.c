@@ -6,6 +6,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "load/picture.h"
 
 #define LIBRARY_LIMIT (UINT64_C(256) << 20)
 
@@ -177,7 +178,9 @@ static whit_result read_library(struct scene *scene, const char *obj_path, const
 {
     uint8_t *data = NULL;
     size_t size = 0;
-    char *path = roots_join(obj_path, name);
+    char *written = roots_join(obj_path, name);
+    char *path = written ? picture_find(&scene->roots, written) : NULL;
+    free(written);
     if (!path)
         return WHIT_ERROR_MEMORY;
     *why_not = roots_why_not(&scene->roots, path);

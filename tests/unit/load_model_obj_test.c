@@ -152,6 +152,18 @@ TEST_IN(wide_text, fixture_begin, fixture_end)
     assert_int_equal(only_mesh()->triangle_count, 1);
 }
 
+TEST_IN(libraries_are_found_by_other_case_and_slashes, fixture_begin, fixture_end)
+{
+    put_text("Red.mtl", "newmtl red\nKd 1 0 0\n");
+    put_text("green.mtl", "newmtl green\nKd 0 1 0\n");
+    const char *path = put_text("a.obj", "mtllib RED.MTL\nmtllib .\\Green.mtl\n" QUAD
+                                         "usemtl red\nf 1 2 3\nusemtl green\nf 1 3 4\n");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    assert_float_equal(material_named(fixture.scene, "red")->diffuse[1], 0, 0);
+    assert_float_equal(material_named(fixture.scene, "green")->diffuse[0], 0, 0);
+    assert_int_equal(fixture.scene->note_count, 0);
+}
+
 TEST_IN(lines_are_cleaned, fixture_begin, fixture_end)
 {
     put_text("a.mtl", "newmtl red # x\nKd 1 0 0\nnewmtl Material #25\nKd 0 1 0\n");
