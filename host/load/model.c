@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/key_table.h"
 #include "base/text.h"
+#include "load/cut.h"
 #include "load/model.h"
 #include "load/model_mesh.h"
 #include "load/obj.h"
@@ -183,6 +184,8 @@ static whit_result prepare(struct scene *scene, const struct model_request *requ
             return WHIT_ERROR_MEMORY;
         return obj_read_libraries(scene, path, (const char *)*data, library);
     }
+    if (kind == IMPORT_STL)
+        return cut_check_stl(scene, path, *data, size_bytes);
     if (kind != IMPORT_PLY)
         return WHIT_OK;
     whit_result result = ply_check(&scene->log, path, *data, *size_bytes);

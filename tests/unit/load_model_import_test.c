@@ -291,6 +291,38 @@ TEST_IN(facets_are_welded, fixture_begin, fixture_end)
     assert_null(mesh->normals);
 }
 
+/* Writes a binary STL of two triangles and 7 more bytes, which says that it has `count`. */
+static const char *put_stl(uint8_t count, size_t size_bytes)
+{
+    uint8_t data[84 + 2 * 50 + 7] = "solid";
+    static const float corners[2][9] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 1, 0, 0, 0, 1}};
+    data[80] = count;
+    for (size_t i = 0; i < 2; i++)
+        memcpy(data + 84 + i * 50 + 12, corners[i], sizeof corners[i]);
+    return put_data("a.stl", data, size_bytes);
+}
+
+TEST_IN(bytes_behind_the_triangles_of_an_stl_are_noted, fixture_begin, fixture_end)
+{
+    assert_int_equal(fixture_load(put_stl(2, 184)), WHIT_OK);
+    assert_int_equal(fixture.scene->note_count, 0);
+    assert_int_equal(fixture_load(put_stl(2, 191)), WHIT_OK);
+    assert_true(fixture_noted("a.stl: 7 bytes behind its triangles are not read"));
+    assert_int_equal(fixture_load(put_stl(1, 184)), WHIT_OK);
+    assert_true(fixture_noted("a.stl: 50 bytes behind its triangles are not read"));
+    assert_int_equal(fixture.scene->meshes[1].triangle_count, 2);
+    assert_int_equal(fixture.scene->meshes[2].triangle_count, 1);
+}
+
+TEST_IN(triangles_that_an_stl_lacks_are_told, fixture_begin, fixture_end)
+{
+    fixture_refused(put_stl(3, 191), "a.stl: it says that it has 3 triangles, and has room for 2");
+    messages.errors = 0;
+    fixture_refused(put_stl(2, 183), "a.stl: it says that it has 2 triangles, and has room for 1");
+    messages.errors = 0;
+    fixture_refused(put_stl(0, 184), "a.stl: it says that it has 0 triangles, and has room for 2");
+}
+
 /* --- hostile files -------------------------------------------------------------------------- */
 
 /* Errors name the file by its real path, not by the name under which assimp gets it. */
