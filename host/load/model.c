@@ -191,6 +191,8 @@ static whit_result prepare(struct scene *scene, const struct model_request *requ
     whit_result result = ply_check(&scene->log, path, *data, *size_bytes);
     if (result == WHIT_OK)
         result = ply_replace_strips(&scene->log, path, data, size_bytes);
+    if (result == WHIT_OK)
+        result = ply_check_elements(&scene->log, path, *data, *size_bytes);
     if (result == WHIT_OK && !ply_repair(data, size_bytes))
         result = WHIT_ERROR_MEMORY;
     return result;

@@ -1,10 +1,12 @@
-/* Triangle strips of a PLY. assimp 5.2 reads only the last triangle of a strip, so strips are
-   converted to faces before it gets the file. */
+/* The elements of a PLY. assimp 5.2 reads only the last triangle of a strip, so strips are
+   converted to faces before it gets the file; and it crashes on faces that are cut short or empty,
+   so that these are refused. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
+#include "base/text.h"
 #include "load/ply.h"
 
 /* --- the header ----------------------------------------------------------------------------- */
@@ -18,7 +20,7 @@ struct type {
 };
 
 struct property {
-    bool list;
+    bool list, is_corners; /* is_corners: the vertices of a face */
     struct type count, value;
 };
 
@@ -83,8 +85,10 @@ static size_t read_line(const uint8_t *data, size_t size_bytes, size_t at,
 static bool add_property(struct header *header, char words[WORDS_MAX][WORD_BYTES])
 {
     bool list = strcmp(words[1], "list") == 0;
-    const struct property property = {
-        .list = list, .count = type_of(words[2]), .value = type_of(words[list ? 3 : 1])};
+    const struct property property = {.list = list,
+                                      .is_corners = strncmp(words[4], "vertex_ind", 10) == 0,
+                                      .count = type_of(words[2]),
+                                      .value = type_of(words[list ? 3 : 1])};
     header->elements[header->element_count - 1].property_count++;
     return ARRAY_PUSH(header->properties, header->property_count, header->property_capacity,
                       property);
@@ -337,6 +341,81 @@ whit_result ply_replace_strips(const whit_log *log, const char *path, uint8_t **
     const struct element *element = find_element(&header, "tristrips");
     if (result == WHIT_OK && element && header.end <= *size_bytes)
         result = replace(log, path, &header, element, data, size_bytes);
+    header_finish(&header);
+    return result;
+}
+
+/* --- faces that are cut short --------------------------------------------------------------- */
+
+/* Moves a cursor on a line of an ASCII file to the next one with data. */
+static void next_line(struct cursor *line, const uint8_t *end)
+{
+    line->at = line->end;
+    while (line->at < end && *line->at <= ' ')
+        line->at++;
+    line->end = line->at;
+    while (line->end < end && *line->end != '\n' && *line->end != '\r')
+        line->end++;
+}
+
+/* Skips an instance of an element; gives why it cannot be read, or NULL. */
+static const char *skip_instance(struct cursor *from, const struct header *header,
+                                 const struct element *element)
+{
+    for (uint32_t k = 0; k < element->property_count; k++) {
+        const struct property *property = &header->properties[element->first_property + k];
+        struct cursor count_at = *from;
+        int64_t count = 1;
+        if (!skip_property(from, property))
+            return "is cut short, missing or not of numbers";
+        if (property->is_corners && read_whole(&count_at, property->count, &count) && count == 0)
+            return "has no corners";
+    }
+    return NULL;
+}
+
+/* Whether whit knows the sizes of all types. */
+static bool has_known_types(const struct header *header)
+{
+    for (uint32_t i = 0; i < header->property_count; i++) {
+        const struct property *property = &header->properties[i];
+        if (property->value.bytes == 0 || (property->list && property->count.bytes == 0))
+            return false;
+    }
+    return true;
+}
+
+static whit_result check_elements(const whit_log *log, const char *path, const uint8_t *data,
+                                  size_t size_bytes, const struct header *header)
+{
+    const uint8_t *end = data + size_bytes;
+    bool lines = header->format == FORMAT_ASCII;
+    struct cursor from = {data + header->end, lines ? data + header->end : end, header->format};
+    for (uint32_t i = 0; i < header->element_count; i++) {
+        const struct element *element = &header->elements[i];
+        const char *why_not = NULL;
+        unsigned long long done = 0;
+        for (; done < element->count && !why_not; done++) {
+            if (lines)
+                next_line(&from, end);
+            why_not = skip_instance(&from, header, element);
+        }
+        if (why_not) {
+            log_error(log, "%s: %s %llu of %llu %s", path, text_token(element->name).text, done,
+                      element->count, why_not);
+            return WHIT_ERROR_INPUT;
+        }
+    }
+    return WHIT_OK;
+}
+
+whit_result ply_check_elements(const whit_log *log, const char *path, const uint8_t *data,
+                               size_t size_bytes)
+{
+    struct header header = {0};
+    whit_result result = read_header(data, size_bytes, &header) ? WHIT_OK : WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK && header.end <= size_bytes && has_known_types(&header))
+        result = check_elements(log, path, data, size_bytes, &header);
     header_finish(&header);
     return result;
 }

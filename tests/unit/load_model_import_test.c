@@ -291,6 +291,33 @@ TEST_IN(facets_are_welded, fixture_begin, fixture_end)
     assert_null(mesh->normals);
 }
 
+#define FACES_HEADER(format)                                                                       \
+    "ply\nformat " format " 1.0\nelement vertex 3\nproperty uchar x\nproperty uchar y\n"           \
+    "property uchar z\nelement face 2\nproperty list uchar uchar vertex_indices\nend_header\n"
+
+TEST_IN(faces_that_a_ply_lacks_are_told, fixture_begin, fixture_end)
+{
+    static const struct {
+        const char *text, *reason;
+    } files[] = {
+        {FACES_HEADER("ascii") "0 0 0\n1 0 0\n0 1 0\n",
+         "face 1 of 2 is cut short, missing or not of numbers"},
+        {FACES_HEADER("ascii") "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1",
+         "face 2 of 2 is cut short, missing or not of numbers"},
+        {FACES_HEADER("ascii") "0 0 0\n1 0\n0 1 0\n3 0 1 2\n3 0 1 2\n",
+         "vertex 2 of 3 is cut short, missing or not of numbers"},
+        {FACES_HEADER("ascii") "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n0\n", "face 2 of 2 has no corners"},
+        {FACES_HEADER("binary_big_endian") "123456789\3\1\1\1\3\1\1",
+         "face 2 of 2 is cut short, missing or not of numbers"},
+    };
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        messages.errors = 0;
+        fixture_refused(put_text("a.ply", files[i].text), files[i].reason);
+    }
+    const char *whole = FACES_HEADER("ascii") "0 0 0\n1 0 0\n0 1 0\n\n3 0 1 2\r\n3 0 1 2";
+    assert_int_equal(fixture_load(put_text("a.ply", whole)), WHIT_OK);
+}
+
 /* Writes a binary STL of two triangles and 7 more bytes, which says that it has `count`. */
 static const char *put_stl(uint8_t count, size_t size_bytes)
 {
