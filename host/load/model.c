@@ -186,6 +186,8 @@ static whit_result prepare(struct scene *scene, const struct model_request *requ
     }
     if (kind == IMPORT_STL)
         return cut_check_stl(scene, path, *data, size_bytes);
+    if (kind == IMPORT_OFF)
+        return cut_check_off(scene, path, (const char *)*data);
     if (kind != IMPORT_PLY)
         return WHIT_OK;
     whit_result result = ply_check(&scene->log, path, *data, *size_bytes);
