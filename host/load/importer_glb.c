@@ -193,11 +193,25 @@ static void drop(struct aiScene *scene, enum import_kind kind, struct import_cou
     scene->mNumCameras = scene->mNumLights = 0;
 }
 
+/* Divides the colours of an OFF by 255 if one is larger than 1: assimp passes bytes on as they are,
+   and the format states no range. */
+static void scale_colors(struct aiMesh *mesh)
+{
+    float *colors = (float *)mesh->mColors[0], largest = 0;
+    size_t count = colors ? (size_t)mesh->mNumVertices * 4 : 0;
+    for (size_t i = 0; i < count; i++)
+        largest = fmaxf(largest, colors[i]);
+    for (size_t i = 0; largest > 1 && i < count; i++)
+        colors[i] /= 255;
+}
+
 const struct aiExportDataBlob *importer_glb(struct aiScene *scene,
                                             const struct import_request *request,
                                             struct import_counts *counts)
 {
     drop(scene, request->kind, counts);
+    for (unsigned i = 0; request->kind == IMPORT_OFF && i < scene->mNumMeshes; i++)
+        scale_colors(scene->mMeshes[i]);
     place(scene, request);
     for (unsigned i = 0; i < scene->mNumMaterials; i++) {
         shorten_paths(scene->mMaterials[i]);

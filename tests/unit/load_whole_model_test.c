@@ -54,6 +54,21 @@ TEST_IN(off_has_faces_alone, fixture_begin, fixture_end)
     assert_place(scene, 0, 0, 0, 0, 0);
 }
 
+TEST_IN(colors_of_an_off_are_bytes_or_shares, fixture_begin, fixture_end)
+{
+    load(put_text("a.off", "COFF\n3 1 0\n0 0 0 255 0 51 255\n1 0 0 0 255 0 255\n"
+                           "0 1 0 0 0 0 255\n3 0 1 2\n"));
+    load(put_text("b.off", "COFF\n3 1 0\n0 0 0 1 0 0.2 1\n1 0 0 0 1 0 1\n"
+                           "0 1 0 0 0 0 1\n3 0 1 2\n"));
+    for (int i = 0; i < 2; i++) {
+        const float *color = fixture.scene->meshes[i].colors;
+        assert_non_null(color);
+        assert_float_equal(color[0], 1, 0);
+        assert_float_equal(color[2], 0.2, 1e-6);
+        assert_float_equal(color[3], 1, 0);
+    }
+}
+
 #define SQUARE "0 0 0\n1 0 0\n1 2 0\n0 2 3\n"
 
 TEST_IN(faces_that_an_off_lacks_are_told, fixture_begin, fixture_end)
