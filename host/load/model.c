@@ -182,7 +182,9 @@ static whit_result prepare(struct scene *scene, const struct model_request *requ
     if (kind == IMPORT_OBJ) {
         if (!obj_repair_text(data, size_bytes))
             return WHIT_ERROR_MEMORY;
-        return obj_read_libraries(scene, path, (const char *)*data, library);
+        whit_result checked = obj_check_faces(scene, path, (const char *)*data);
+        return checked == WHIT_OK ? obj_read_libraries(scene, path, (const char *)*data, library)
+                                  : checked;
     }
     if (kind == IMPORT_STL)
         return cut_check_stl(scene, path, *data, size_bytes);

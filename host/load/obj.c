@@ -169,6 +169,85 @@ uint32_t obj_longest_face(const char *text)
     return longest;
 }
 
+/* What a face may name, in the order of its corners' indices: `v`, `vt` and `vn`. */
+enum { NAMED_KINDS = 3 };
+
+/* The kind of a line that adds something that faces may name; NAMED_KINDS: a face; else -1. */
+static int kind_of_line(const char *line)
+{
+    if (line[0] == 'f')
+        return NAMED_KINDS;
+    int kind = line[0] != 'v' ? -1 : line[1] == 't' ? 1 : line[1] == 'n' ? 2 : 0;
+    return kind < 0 || is_blank((uint8_t)line[kind ? 2 : 1]) ? kind : -1;
+}
+
+struct face_check {
+    struct scene *scene;
+    const char *path;
+    uint32_t line;
+    long long total[NAMED_KINDS], above[NAMED_KINDS]; /* in the file, and above the face */
+    bool noted[NAMED_KINDS];
+};
+
+static bool check_index(struct face_check *check, int kind, long long index)
+{
+    static const char *const names[] = {"vertex", "texture coordinate", "normal"};
+    long long from_first = index < 0 ? check->above[kind] + index + 1 : index;
+    if (from_first >= 1 && from_first <= check->total[kind])
+        return true;
+    if (kind == 0) {
+        log_error(&check->scene->log, "%s:%u: a face names vertex %lld, and there are %lld",
+                  check->path, check->line, index, check->total[kind]);
+        return false;
+    }
+    if (!check->noted[kind])
+        scene_note(check->scene, SCENE_NOTE_WARNING,
+                   "%s:%u: a face names %s %lld, and there are %lld: its group is drawn without",
+                   path_name(check->path), check->line, names[kind], index, check->total[kind]);
+    check->noted[kind] = true;
+    return true;
+}
+
+/* Checks the corners, such as 1, 1/2 or 1//3, of the face at `at`. */
+static bool check_face(struct face_check *check, const char *at)
+{
+    for (;;) {
+        at += strcspn(at, " \t\n");
+        at += strspn(at, " \t");
+        if (*at == 0 || *at == '\n')
+            return true;
+        for (int kind = 0; kind < NAMED_KINDS; kind++) {
+            bool starts = strchr("+-0123456789", *at) && *at;
+            char *end = (char *)(uintptr_t)at;
+            long long index = starts ? strtoll(at, &end, 10) : 0;
+            if (end > at && !check_index(check, kind, index))
+                return false;
+            at = end;
+            if (*at != '/')
+                break;
+            at++;
+        }
+    }
+}
+
+whit_result obj_check_faces(struct scene *scene, const char *path, const char *text)
+{
+    struct face_check check = {.scene = scene, .path = path, .line = 1};
+    for (const char *at = text; *at; at += strcspn(at, "\n"), at += *at != 0) {
+        int kind = kind_of_line(at);
+        if (kind >= 0 && kind < NAMED_KINDS)
+            check.total[kind]++;
+    }
+    for (const char *at = text; *at; at += strcspn(at, "\n"), at += *at != 0, check.line++) {
+        int kind = kind_of_line(at);
+        if (kind == NAMED_KINDS && !check_face(&check, at))
+            return WHIT_ERROR_INPUT;
+        if (kind >= 0 && kind < NAMED_KINDS)
+            check.above[kind]++;
+    }
+    return WHIT_OK;
+}
+
 /* --- material libraries --------------------------------------------------------------------- */
 
 /* Reads a library, unless it is in `read` already. *why_not: NULL, or why it cannot be read. */

@@ -17,6 +17,10 @@ WHIT_CHECK bool obj_repair_text(uint8_t **data, size_t *size_bytes);
    face. */
 uint32_t obj_longest_face(const char *text);
 
+/* Logs an error if a face of a repaired text names a vertex that is not there. Texture coordinates
+   and normals that are not there are noted: assimp 5.2 then drops them for the whole group. */
+WHIT_CHECK whit_result obj_check_faces(struct scene *scene, const char *path, const char *text);
+
 /* Reads the material libraries that the text names; if it names none, the one that is called like
    the OBJ, beside it. Missing ones are noted. */
 WHIT_CHECK whit_result obj_read_libraries(struct scene *scene, const char *path, const char *text,

@@ -208,7 +208,23 @@ TEST_IN(nothing_to_draw_is_refused, fixture_begin, fixture_end)
 
 TEST_IN(index_out_of_range_is_refused, fixture_begin, fixture_end)
 {
-    fixture_refused(put_text("a.obj", QUAD "f 1 2 9\n"), "OBJ: ");
+    fixture_refused(put_text("a.obj", QUAD "f 1 2 9\n"),
+                    "a.obj:5: a face names vertex 9, and there are 4");
+    messages.errors = 0;
+    fixture_refused(put_text("a.obj", QUAD "f 1 2 3\nf 1 \\\n2 -5\n"),
+                    "a.obj:6: a face names vertex -5, and there are 4");
+}
+
+TEST_IN(texture_coordinates_that_are_not_there_are_told, fixture_begin, fixture_end)
+{
+    const char *path = put_text("a.obj", QUAD "vt 0 0\nvt 1 0\nvn 0 0 1\nf 1/1/1 2/2/1 3/1/2\n");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    assert_true(fixture_noted("a.obj:8: a face names normal 2, and there are 1: its group"));
+    assert_int_equal(fixture.scene->note_count, 1);
+    path = put_text("a.obj", "f 1// 2 3/ \n" QUAD "vt 0 0\nf 1/1 2/9 3/8\n");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    assert_true(fixture_noted("a.obj:7: a face names texture coordinate 9, and there are 1"));
+    assert_int_equal(fixture.scene->note_count, 2);
 }
 
 /* --- classes -------------------------------------------------------------------------------- */
