@@ -164,7 +164,7 @@ whit_result gltf_unpack(const struct gltf *gltf, const struct gltf_primitive *pr
         return WHIT_ERROR_INPUT;
     files[0].data = (const uint8_t *)text;
     files[0].size_bytes = strlen(text);
-    const struct import_request request = {IMPORT_GLTF, files, 2};
+    const struct import_request request = {IMPORT_GLTF, files, 2, false};
     whit_result result = importer_run(&gltf->scene->log, gltf->request->path, &request,
                                       gltf->request->params, &block);
     if (result == WHIT_OK)

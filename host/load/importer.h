@@ -31,6 +31,7 @@ struct import_request {
     enum import_kind kind;
     const struct import_file *files;
     uint32_t file_count;
+    bool has_smooth_groups; /* normals mark them, see obj_mark_smooth_groups */
 };
 
 /* Triangles of one group and material. Pointers are into the block; optional arrays are NULL. */

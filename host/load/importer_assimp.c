@@ -232,8 +232,10 @@ static bool flatten_mesh(struct flat *flat, const struct aiScene *scene, const s
     return ok;
 }
 
-static bool flatten(struct flat *flat, const struct aiScene *scene, enum import_kind kind)
+static bool flatten(struct flat *flat, const struct aiScene *scene,
+                    const struct import_request *request)
 {
+    enum import_kind kind = request->kind;
     flat->parts = array_alloc_zeroed(scene->mNumMeshes, sizeof *flat->parts);
     flat->records = array_alloc_zeroed(scene->mNumMeshes, sizeof *flat->records);
     if (!flat->parts || !flat->records)
@@ -241,6 +243,8 @@ static bool flatten(struct flat *flat, const struct aiScene *scene, enum import_
     for (uint32_t i = 0; i < scene->mNumMeshes; i++)
         if (!flatten_mesh(flat, scene, scene->mMeshes[i], kind))
             return false;
+    if (request->has_smooth_groups && !parts_smooth(flat->parts, flat->count))
+        return false;
     return parts_complete(flat->parts, flat->count, kind == IMPORT_OBJ || kind == IMPORT_STL);
 }
 
@@ -378,7 +382,7 @@ static int write_triangles(const struct aiScene **scene, const struct import_req
     struct flat flat = {.counts = *counts};
     int code = 1;
     *scene = aiApplyPostProcessing(*scene, aiProcess_Triangulate);
-    if (!*scene || !flatten(&flat, *scene, request->kind))
+    if (!*scene || !flatten(&flat, *scene, request))
         code = CHILD_EXIT_MEMORY; /* nothing else stops either step */
     else if (write_block(&flat, to, write))
         code = 0;

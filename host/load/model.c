@@ -30,25 +30,34 @@ static void log_long_face(const whit_log *log, const char *path, uint32_t line,
               place, (unsigned long long)counts->corners, IMPORT_CORNERS_MAX);
 }
 
+/* The bytes of a model, and what whit itself reads of them. */
+struct model_file {
+    enum import_kind kind;
+    uint8_t *data;
+    size_t size_bytes;
+    struct mtl_library library; /* that an OBJ names */
+    bool has_smooth_groups;
+};
+
 static whit_result import(struct scene *scene, const struct model_request *request,
-                          enum import_kind kind, const uint8_t *data, size_t size_bytes,
-                          struct import_block *block)
+                          const struct model_file *of, struct import_block *block)
 {
     static const char *const names[] = {"model.obj", "model.gltf", "model.ply", "model.stl",
                                         "model.fbx", "model.dae",  "model.3mf", "model.off"};
-    const struct import_file file = {names[kind], data, size_bytes};
-    const struct import_request import = {kind, &file, 1};
+    const struct import_file file = {names[of->kind], of->data, of->size_bytes};
+    const struct import_request import = {of->kind, &file, 1, of->has_smooth_groups};
     whit_result result = importer_run(&scene->log, request->path, &import, request->params, block);
     if (result != WHIT_OK)
         return result;
     const struct import_counts *counts = &block->counts;
     model_note_counts(scene, request->path, counts);
-    bool whole = kind >= IMPORT_FBX;
+    bool whole = of->kind >= IMPORT_FBX;
     if (whole ? block->glb != NULL : block->part_count > 0)
         return WHIT_OK;
     if (counts->corners)
         log_long_face(&scene->log, request->path,
-                      kind == IMPORT_OBJ ? obj_longest_face((const char *)data) : 0, counts);
+                      of->kind == IMPORT_OBJ ? obj_longest_face((const char *)of->data) : 0,
+                      counts);
     else
         log_error(&scene->log,
                   "%s: there are no triangles in it (%llu points, %llu lines, %llu damaged faces)",
@@ -172,34 +181,41 @@ static whit_result add_whole(struct scene *scene, const struct model_request *re
 
 /* --- all kinds ------------------------------------------------------------------------------ */
 
+static whit_result prepare_obj(struct scene *scene, const char *path, struct model_file *file)
+{
+    if (!obj_repair_text(&file->data, &file->size_bytes))
+        return WHIT_ERROR_MEMORY;
+    whit_result result = obj_check_faces(scene, path, (const char *)file->data);
+    if (result == WHIT_OK)
+        result = obj_read_libraries(scene, path, (const char *)file->data, &file->library);
+    bool marked = result != WHIT_OK ||
+                  obj_mark_smooth_groups(&file->data, &file->size_bytes, &file->has_smooth_groups);
+    return marked ? result : WHIT_ERROR_MEMORY;
+}
+
+static whit_result prepare_ply(struct scene *scene, const char *path, struct model_file *file)
+{
+    whit_result result = ply_check(&scene->log, path, file->data, file->size_bytes);
+    if (result == WHIT_OK)
+        result = ply_replace_strips(&scene->log, path, &file->data, &file->size_bytes);
+    if (result == WHIT_OK)
+        result = ply_check_elements(&scene->log, path, file->data, file->size_bytes);
+    bool repaired = result != WHIT_OK || ply_repair(&file->data, &file->size_bytes);
+    return repaired ? result : WHIT_ERROR_MEMORY;
+}
+
 /* Checks and repairs the bytes of a file before assimp gets them, and reads the materials that an
    OBJ names. */
-static whit_result prepare(struct scene *scene, const struct model_request *request,
-                           enum import_kind kind, uint8_t **data, size_t *size_bytes,
-                           struct mtl_library *library)
+static whit_result prepare(struct scene *scene, const char *path, struct model_file *file)
 {
-    const char *path = request->path;
-    if (kind == IMPORT_OBJ) {
-        if (!obj_repair_text(data, size_bytes))
-            return WHIT_ERROR_MEMORY;
-        whit_result checked = obj_check_faces(scene, path, (const char *)*data);
-        return checked == WHIT_OK ? obj_read_libraries(scene, path, (const char *)*data, library)
-                                  : checked;
-    }
-    if (kind == IMPORT_STL)
-        return cut_check_stl(scene, path, *data, size_bytes);
-    if (kind == IMPORT_OFF)
-        return cut_check_off(scene, path, (const char *)*data);
-    if (kind != IMPORT_PLY)
-        return WHIT_OK;
-    whit_result result = ply_check(&scene->log, path, *data, *size_bytes);
-    if (result == WHIT_OK)
-        result = ply_replace_strips(&scene->log, path, data, size_bytes);
-    if (result == WHIT_OK)
-        result = ply_check_elements(&scene->log, path, *data, *size_bytes);
-    if (result == WHIT_OK && !ply_repair(data, size_bytes))
-        result = WHIT_ERROR_MEMORY;
-    return result;
+    if (file->kind == IMPORT_OBJ)
+        return prepare_obj(scene, path, file);
+    if (file->kind == IMPORT_PLY)
+        return prepare_ply(scene, path, file);
+    if (file->kind == IMPORT_STL)
+        return cut_check_stl(scene, path, file->data, &file->size_bytes);
+    return file->kind == IMPORT_OFF ? cut_check_off(scene, path, (const char *)file->data)
+                                    : WHIT_OK;
 }
 
 /* Frees `data` as soon as it is imported. Vertex colours of PLY and STL are taken as sRGB, since
@@ -207,18 +223,18 @@ static whit_result prepare(struct scene *scene, const struct model_request *requ
 static whit_result load_imported(struct scene *scene, const struct model_request *request,
                                  enum import_kind kind, uint8_t *data, size_t size_bytes)
 {
-    struct mtl_library library = {0};
+    struct model_file file = {.kind = kind, .data = data, .size_bytes = size_bytes};
     struct import_block block = {0};
-    whit_result result = prepare(scene, request, kind, &data, &size_bytes, &library);
+    whit_result result = prepare(scene, request->path, &file);
     if (result == WHIT_OK)
-        result = import(scene, request, kind, data, size_bytes, &block);
-    free(data);
+        result = import(scene, request, &file, &block);
+    free(file.data);
     if (result == WHIT_OK && kind >= IMPORT_FBX)
         result = add_whole(scene, request, &block);
     else if (result == WHIT_OK)
-        result = add_block(scene, request, &block, &library, kind != IMPORT_OBJ);
+        result = add_block(scene, request, &block, &file.library, kind != IMPORT_OBJ);
     importer_finish(&block);
-    mtl_finish(&library);
+    mtl_finish(&file.library);
     return result;
 }
 

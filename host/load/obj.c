@@ -1,5 +1,6 @@
 #include "load/obj.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -246,6 +247,81 @@ whit_result obj_check_faces(struct scene *scene, const char *path, const char *t
             check.above[kind]++;
     }
     return WHIT_OK;
+}
+
+/* --- smoothing groups ----------------------------------------------------------------------- */
+
+/* Writes a face whose corners have the last normal above it. */
+static void write_face(FILE *file, const char *at, const char *end)
+{
+    fputc('f', file);
+    for (at += strcspn(at, " \t\n"); at < end;) {
+        at += strspn(at, " \t");
+        size_t bytes = strcspn(at, " \t\n");
+        const char *slash = memchr(at, '/', bytes), *last = at + bytes;
+        const char *second = slash ? memchr(slash + 1, '/', (size_t)(last - slash - 1)) : NULL;
+        fprintf(file, " %.*s%s-1", (int)((second ? second : last) - at), at, slash ? "/" : "//");
+        at = last;
+    }
+}
+
+/* Writes the text with normals for smoothing groups; gives whether there was one. */
+static bool write_groups(FILE *file, const char *text)
+{
+    bool found = false, smooth = false;
+    for (const char *at = text; *at;) {
+        const char *end = at + strcspn(at, "\n");
+        if (at[0] == 's' && is_blank((uint8_t)at[1])) {
+            const char *name = at + 1 + strspn(at + 1, " \t");
+            bool off = *name == '0' || strncmp(name, "off", 3) == 0;
+            unsigned long number = strtoul(name, NULL, 10); /* 0: `on` */
+            smooth = !off;
+            found |= smooth;
+            if (smooth)
+                fprintf(file, "vn %lu 0 0", number ? number : 1);
+        } else if (smooth && *at == 'f') {
+            write_face(file, at, end);
+        } else {
+            fwrite(at, 1, (size_t)(end - at), file);
+        }
+        fputc('\n', file);
+        at = end + (*end != 0);
+    }
+    return found;
+}
+
+static bool has_line(const char *text, const char *keyword)
+{
+    size_t bytes = strlen(keyword);
+    while (*text && (strncmp(text, keyword, bytes) != 0 || !is_blank((uint8_t)text[bytes]))) {
+        text += strcspn(text, "\n");
+        text += *text != 0;
+    }
+    return *text;
+}
+
+bool obj_mark_smooth_groups(uint8_t **data, size_t *size_bytes, bool *has_groups)
+{
+    const char *text = (const char *)*data;
+    char *marked = NULL;
+    size_t bytes;
+    *has_groups = false;
+    if (has_line(text, "vn") || !has_line(text, "s"))
+        return true;
+    FILE *file = open_memstream(&marked, &bytes);
+    if (!file)
+        return false;
+    *has_groups = write_groups(file, text);
+    bool good = !ferror(file);
+    good = fclose(file) == 0 && good;
+    if (!good || !*has_groups) {
+        free(marked);
+        return good;
+    }
+    free(*data);
+    *data = (uint8_t *)marked; /* a zero byte follows */
+    *size_bytes = bytes;
+    return true;
 }
 
 /* --- material libraries --------------------------------------------------------------------- */

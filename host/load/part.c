@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/same.h"
 #include "base/vec.h"
 
 void part_finish(struct part *part)
@@ -227,6 +228,73 @@ static bool weld_part(struct part *part)
     free(weld.table);
     free(moved);
     return ok;
+}
+
+/* --- smoothing groups ------------------------------------------------------------------------ */
+
+/* Copies positions, normals and triangles of all parts into one, whose equal vertices are merged.
+   False when memory runs out; *out is then to be released too. */
+static bool join_parts(const struct part *parts, uint32_t count, struct part *out)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        out->vertex_count += parts[i].vertex_count;
+        out->triangle_count += parts[i].triangle_count;
+    }
+    float *positions = part_add(out, IMPORT_POSITIONS), *normals = part_add(out, IMPORT_NORMALS);
+    uint32_t *indices = part_add(out, IMPORT_INDICES), first = 0;
+    for (uint32_t i = 0; positions && normals && indices && i < count; i++) {
+        const float *from = parts[i].arrays[IMPORT_POSITIONS];
+        const float *marks = parts[i].arrays[IMPORT_NORMALS];
+        const uint32_t *corners = parts[i].arrays[IMPORT_INDICES];
+        for (size_t k = 0; k < (size_t)parts[i].vertex_count * 3; k++) {
+            *positions++ =
+                from[k] + 0.0f; /* a negative zero becomes zero, since bits are compared */
+            *normals++ = marks ? marks[k] : 0.0f;
+        }
+        for (size_t k = 0; k < (size_t)parts[i].triangle_count * 3; k++)
+            *indices++ = corners[k] + first;
+        first += parts[i].vertex_count;
+    }
+    return positions && normals && indices && weld_part(out);
+}
+
+static void add_corner(const struct part *part, uint32_t triangle, uint32_t corner, double *sums)
+{
+    const float *positions = part->arrays[IMPORT_POSITIONS];
+    const uint32_t *index = (const uint32_t *)part->arrays[IMPORT_INDICES] + (size_t)triangle * 3;
+    const float *at = positions + (size_t)index[corner] * 3;
+    double normal[3], edges[2][3];
+    triangle_cross(part, triangle, normal);
+    for (uint32_t i = 0; i < 2; i++)
+        for (size_t k = 0; k < 3; k++)
+            edges[i][k] = (double)positions[(size_t)index[(corner + i + 1) % 3] * 3 + k] - at[k];
+    double angle = same_atan2(double3_area(edges[0], edges[1]), double3_dot(edges[0], edges[1]));
+    for (size_t k = 0; k < 3; k++)
+        sums[(size_t)index[corner] * 3 + k] += angle * normal[k];
+}
+
+bool parts_smooth(struct part *parts, uint32_t count)
+{
+    struct part joined = {0};
+    bool ok = join_parts(parts, count, &joined);
+    double *sums = ok ? array_alloc_zeroed(joined.vertex_count, 3 * sizeof *sums) : NULL;
+    const uint32_t *corners = joined.arrays[IMPORT_INDICES];
+    const float *marks = joined.arrays[IMPORT_NORMALS];
+    for (size_t i = 0; sums && i < (size_t)joined.triangle_count * 3; i++)
+        add_corner(&joined, (uint32_t)(i / 3), (uint32_t)(i % 3), sums);
+    for (uint32_t i = 0; sums && i < count; i++) {
+        float *normals = parts[i].arrays[IMPORT_NORMALS];
+        const uint32_t *indices = parts[i].arrays[IMPORT_INDICES];
+        for (size_t k = 0; k < (size_t)parts[i].triangle_count * 3; k++, corners++) {
+            double *sum = sums + (size_t)*corners * 3, length = double3_length(sum);
+            for (size_t axis = 0; marks[(size_t)*corners * 3] > 0 && axis < 3; axis++)
+                normals[(size_t)indices[k] * 3 + axis] =
+                    length > 0 ? (float)(sum[axis] / length) : 0;
+        }
+    }
+    free(sums);
+    part_finish(&joined);
+    return sums;
 }
 
 /* --- parts of a mesh ------------------------------------------------------------------------- */

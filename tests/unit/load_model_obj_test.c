@@ -141,6 +141,59 @@ TEST_IN(flat_group_beside_a_smooth_one, fixture_begin, fixture_end)
     assert_float_equal(mesh->normals[3 * mesh->indices[3] + 2], 1, 1e-6);
 }
 
+/* Three faces of a unit cube around the origin as its corner, as quads. */
+#define CORNER "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 0\nv 0 1 1\nv 1 0 1\n"
+
+/* The normal of the mesh's vertex at this position, of the first triangle that has it. */
+static const float *normal_at(const struct scene_mesh *mesh, float x, float y, float z)
+{
+    for (uint32_t i = 0; i < 3 * mesh->triangle_count; i++) {
+        const float *p = mesh->positions + 3 * (size_t)mesh->indices[i];
+        if (p[0] == x && p[1] == y && p[2] == z)
+            return mesh->normals + 3 * (size_t)mesh->indices[i];
+    }
+    fail_msg("no vertex at %g %g %g", (double)x, (double)y, (double)z);
+    return NULL;
+}
+
+TEST_IN(smoothing_groups_make_normals, fixture_begin, fixture_end)
+{
+    const char *path =
+        put_text("a.obj", CORNER "vt 0 0\ns 7\nf 1/1 3/1 5/1 2/1\nf 4 6 3 1\ng b\nf 1// 2 7 4\n");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh();
+    assert_non_null(mesh->normals);
+    /* By angle the three faces count alike, however their quads are cut; group b too. */
+    for (int i = 0; i < 3; i++)
+        assert_float_equal(normal_at(mesh, 0, 0, 0)[i], -0.57735, 1e-5);
+    assert_float_equal(normal_at(mesh, 0, 1, 0)[0], -0.70711, 1e-5);
+    assert_float_equal(normal_at(mesh, 0, 1, 0)[1], 0, 1e-5);
+    assert_float_equal(normal_at(mesh, 1, 1, 0)[2], -1, 0);
+}
+
+TEST_IN(smoothing_groups_have_edges_between_them, fixture_begin, fixture_end)
+{
+    const char *path =
+        put_text("a.obj", CORNER "s 1\nf 1 3 5 2\ns 2\nf 1 4 6 3\ns off\nf 1 2 7 4\n");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    assert_non_null(only_mesh()->normals);
+    assert_float_equal(normal_at(only_mesh(), 0, 0, 0)[2], -1, 0);
+    assert_float_equal(normal_at(only_mesh(), 0, 1, 1)[0], -1, 0);
+    const float *flat = normal_at(only_mesh(), 1, 0, 1);
+    assert_true(flat[0] == 0 && flat[1] < 0 && flat[2] == 0);
+}
+
+TEST_IN(smoothing_groups_stand_back, fixture_begin, fixture_end)
+{
+    assert_int_equal(fixture_load(put_text("a.obj", CORNER "s off\nf 1 3 5 2\ns 0\nf 1 4 6 3\n")),
+                     WHIT_OK);
+    assert_null(only_mesh()->normals);
+    assert_int_equal(fixture_load(put_text("a.obj", CORNER "vn 1 0 0\ns 1\nf 1//1 3//1 5//1\n"
+                                                           "f 1 4 6 3\n")),
+                     WHIT_OK);
+    assert_float_equal(fixture.scene->meshes[1].normals[0], 1, 0);
+}
+
 TEST_IN(wide_text, fixture_begin, fixture_end)
 {
     const char *text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
