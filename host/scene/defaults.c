@@ -11,6 +11,9 @@
 #include "scene/pose.h"
 #include "scene/viewpoint.h"
 
+/* World units; see docs/numerics.md, what is not promised. */
+#define SMALLEST_SIDE 1e-17
+
 /* whit adds a light where the model's own lights reach less than this share of what is seen. */
 static const double LIT_ENOUGH = 0.5;
 /* Where even with the added directional light less than this share is lit, the camera is taken to
@@ -272,12 +275,26 @@ static void add_ambient(struct scene *scene, const struct light_kinds *lights)
         scene_note(scene, SCENE_NOTE_INFO, "no ambient light in the file: there is none");
 }
 
+/* Warns of a scene so small that rays miss its triangles. */
+static void note_tiny(struct scene *scene, const struct scene_pose *pose)
+{
+    double side = -1.0;
+    for (int k = 0; k < 3; ++k)
+        side = fmax(side, pose->hi[k] - pose->lo[k]);
+    if (side >= 0.0 && side < SMALLEST_SIDE)
+        scene_note(scene, SCENE_NOTE_WARNING,
+                   "the scene is only %.2g wide: below %g products of floats underflow, and rays "
+                   "miss triangles",
+                   side, SMALLEST_SIDE);
+}
+
 whit_result freeze_add_defaults(struct scene *scene)
 {
     struct scene_pose pose;
     whit_result result = scene_pose_init(scene, 0.0, &pose);
     if (result != WHIT_OK)
         return result;
+    note_tiny(scene, &pose);
     struct light_kinds lights = {0};
     struct viewpoint viewpoint = {.kind = VIEWPOINT_CORNER};
     if (!scene->camera_count)

@@ -203,6 +203,14 @@ TEST(empty_scene_is_a_background)
     assert_true(scene_noted(scene, "nothing to draw"));
 }
 
+TEST(scenes_below_the_range_of_floats_are_told)
+{
+    own_scene *tiny = scene_ready(scene_of(mesh_box(2e-18, 9e-18, 2e-18)));
+    assert_true(scene_noted(tiny, "the scene is only 9e-18 wide"));
+    own_scene *small = scene_ready(scene_of(mesh_box(2e-18, 2e-17, 2e-18)));
+    assert_false(scene_noted(small, "the scene is only"));
+}
+
 /* The light comes from behind the camera. */
 TEST(missing_camera_and_light_are_made)
 {
