@@ -347,10 +347,18 @@ static whit_result load_skinned(struct geometry *geometry, uint32_t node)
     return result;
 }
 
-static void note_dropped(const struct geometry *geometry)
+/* Notes what is not drawn; logs an error if there are only lines and points, as of other formats.
+ */
+static whit_result note_dropped(const struct geometry *geometry)
 {
     const char *name = path_name(geometry->gltf->request->path);
     struct scene *scene = geometry->gltf->scene;
+    if (geometry->lines_and_points && !geometry->drawn) {
+        log_error(&scene->log,
+                  "%s: there are no triangles in it (%llu primitives of points or lines)",
+                  geometry->gltf->request->path, (unsigned long long)geometry->lines_and_points);
+        return WHIT_ERROR_INPUT;
+    }
     if (geometry->lines_and_points)
         scene_note(scene, SCENE_NOTE_INFO, "%s: %llu primitives of points or lines are not drawn",
                    name, (unsigned long long)geometry->lines_and_points);
@@ -365,6 +373,7 @@ static void note_dropped(const struct geometry *geometry)
             name, (unsigned long long)geometry->tangents);
     if (!geometry->drawn)
         scene_note(scene, SCENE_NOTE_WARNING, "%s: there are no triangles in it", name);
+    return WHIT_OK;
 }
 
 whit_result gltf_load_meshes(struct gltf *gltf)
@@ -376,7 +385,5 @@ whit_result gltf_load_meshes(struct gltf *gltf)
             result = load_mesh(&geometry, i, &gltf->meshes[i]);
     for (uint32_t i = 0; i < gltf->order_count && result == WHIT_OK; i++)
         result = load_skinned(&geometry, gltf->order[i]);
-    if (result == WHIT_OK)
-        note_dropped(&geometry);
-    return result;
+    return result == WHIT_OK ? note_dropped(&geometry) : result;
 }

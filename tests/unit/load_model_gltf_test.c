@@ -552,6 +552,20 @@ TEST_IN(too_few_inverse_matrices_are_refused, fixture_begin, fixture_end)
 {
     fixture_refused(write_skin(INFLUENCES, "{\"joints\":[1,2,1],\"inverseBindMatrices\":4}"),
                     "skins[0]: has 3 joints and 2 inverseBindMatrices");
+
+TEST_IN(lines_alone_are_refused, fixture_begin, fixture_end)
+{
+    put_data("b.bin", data, 48);
+    fixture_refused(
+        put_text(
+            "q.gltf",
+            "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":48,\"uri\":\"b.bin\"}],"
+            "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+            "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"}"
+            "],"
+            "\"meshes\":[{\"primitives\":[{\"mode\":1,\"attributes\":{\"POSITION\":0}}]}],"
+            "\"nodes\":[{\"mesh\":0}]}"),
+        "q.gltf: there are no triangles in it (1 primitives of points or lines)");
 }
 
 TEST_IN(accessors_past_their_view_are_refused, fixture_begin, fixture_end)
