@@ -14,6 +14,8 @@
 #include "load/up.h"
 #include "scene/afford.h"
 
+#define KNOWN "whit reads .json scenes and " LOAD_MODELS " models"
+
 /* A log that puts the loaded file's path before errors about other files that it refers to. */
 struct named_log {
     const whit_log *to;
@@ -89,10 +91,10 @@ static whit_result read_into(struct scene *scene, const char *path, const whit_l
         return load_scene_file(scene, path, params);
     if (load_is_model(path))
         return read_model(scene, path, params);
-    log_error(&scene->log,
-              "%s: the extension `.%s` is not known; whit reads .json scenes and " LOAD_MODELS
-              " models",
-              path, extension);
+    if (extension[0])
+        log_error(&scene->log, "%s: the extension `.%s` is not known; " KNOWN, path, extension);
+    else
+        log_error(&scene->log, "%s: its name has no known extension; " KNOWN, path);
     return WHIT_ERROR_INPUT;
 }
 

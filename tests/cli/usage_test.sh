@@ -97,6 +97,8 @@ refuse 2 "a dash as triangles" "--triangles -: .*/dev/stdout" scene "$CUBE" --tr
 refuse 2 "no such folder" "nowhere/x.png" render "$CUBE" -o "$OUT/nowhere/x.png"
 refuse 2 "missing scene" "missing.json" render "$OUT/missing.json" -o "$P"
 refuse 2 "folder as scene" "$OUT: this is a folder" render "$OUT" -o "$P"
+: >"$OUT/dot."
+refuse 2 "name that ends in a dot" "$OUT/dot.: its name has no known extension" render "$OUT/dot." -o "$P"
 printf '{ "objects": [\n  oops ] }\n' >"$OUT/broken.json"
 refuse 2 "broken scene names its line" "broken.json:2" render "$OUT/broken.json" -o "$P"
 printf '{ "materials": {\n  "a": { "texture": "no.png" } } }\n' >"$OUT/bare.json"
