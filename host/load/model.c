@@ -13,6 +13,7 @@
 #include "load/model_mesh.h"
 #include "load/obj.h"
 #include "load/ply.h"
+#include "load/ply_elements.h"
 
 /* A model larger than this is refused before it is read. */
 #define MODEL_LIMIT (UINT64_C(4) << 30)

@@ -12,14 +12,6 @@
    in bytes: assimp would read on for ever, and trusts counts. Logs an error with its line. */
 WHIT_CHECK whit_result ply_check(const whit_log *log, const char *path, const uint8_t *data,
                                  size_t size_bytes);
-/* Converts triangle strips to faces, in a file that ply_check accepted. Replaces *data, which is
-   malloc'ed with a zero byte behind it, before and after. Damaged strips are logged. */
-WHIT_CHECK whit_result ply_replace_strips(const whit_log *log, const char *path, uint8_t **data,
-                                          size_t *size_bytes);
-/* Logs an error if an element of a file that ply_check accepted is cut short, missing, or a face
-   without corners. A file with a type of numbers that whit does not know is not checked. */
-WHIT_CHECK whit_result ply_check_elements(const whit_log *log, const char *path,
-                                          const uint8_t *data, size_t size_bytes);
 /* assimp 5.2 mistakes a first data byte of 10, as in one binary file of 256, for the end of the
    header's last line. Adds one more such byte there. Replaces *data (malloc'ed). False when memory
    runs out; *data is then intact. */

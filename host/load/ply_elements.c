@@ -1,13 +1,11 @@
-/* The elements of a PLY. assimp 5.2 reads only the last triangle of a strip, so strips are
-   converted to faces before it gets the file; and it crashes on faces that are cut short or empty,
-   so that these are refused. */
+#include "load/ply_elements.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
 #include "base/text.h"
-#include "load/ply.h"
 
 /* --- the header ----------------------------------------------------------------------------- */
 

@@ -1,0 +1,21 @@
+/* Repairs and checks the elements of a PLY, before assimp gets them. */
+#ifndef LOAD_PLY_ELEMENTS_H
+#define LOAD_PLY_ELEMENTS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+
+/* Converts triangle strips to faces, since assimp 5.2 reads only the last triangle of a strip, in a
+   file that ply_check accepted. Replaces *data, which is malloc'ed with a zero byte behind it,
+   before and after. Damaged strips are logged. */
+WHIT_CHECK whit_result ply_replace_strips(const whit_log *log, const char *path, uint8_t **data,
+                                          size_t *size_bytes);
+/* Logs an error if an element of a file that ply_check accepted is cut short, missing, or a face
+   without corners: assimp 5.2 would crash, or draw what is left. A file with a type of numbers that
+   whit does not know is not checked. */
+WHIT_CHECK whit_result ply_check_elements(const whit_log *log, const char *path,
+                                          const uint8_t *data, size_t size_bytes);
+
+#endif
