@@ -201,7 +201,8 @@ static bool check_index(struct face_check *check, int kind, long long index)
                   check->path, check->line, index, check->total[kind]);
         return false;
     }
-    if (!check->noted[kind])
+    /* Some programs number normals that they leave out; these are made as without numbers. */
+    if (!check->noted[kind] && (kind == 1 || check->total[kind]))
         scene_note(check->scene, SCENE_NOTE_WARNING,
                    "%s:%u: a face names %s %lld, and there are %lld: its group is drawn without",
                    path_name(check->path), check->line, names[kind], index, check->total[kind]);

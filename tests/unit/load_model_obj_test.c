@@ -278,6 +278,8 @@ TEST_IN(texture_coordinates_that_are_not_there_are_told, fixture_begin, fixture_
     assert_int_equal(fixture_load(path), WHIT_OK);
     assert_true(fixture_noted("a.obj:7: a face names texture coordinate 9, and there are 1"));
     assert_int_equal(fixture.scene->note_count, 2);
+    assert_int_equal(fixture_load(put_text("a.obj", QUAD "f 1//1 2//2 3//3\n")), WHIT_OK);
+    assert_int_equal(fixture.scene->note_count, 2);
 }
 
 /* --- classes -------------------------------------------------------------------------------- */
