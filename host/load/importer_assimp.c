@@ -144,10 +144,16 @@ static bool copy_tangents(struct part *part, const struct aiMesh *mesh)
     return out;
 }
 
+/* Whether the first three corners are vertices. */
+static bool good_corners(const struct aiFace *face, uint32_t vertex_count)
+{
+    return face->mIndices[0] < vertex_count && face->mIndices[1] < vertex_count &&
+           face->mIndices[2] < vertex_count;
+}
+
 static bool good_face(const struct aiFace *face, uint32_t vertex_count)
 {
-    return face->mNumIndices == 3 && face->mIndices[0] < vertex_count &&
-           face->mIndices[1] < vertex_count && face->mIndices[2] < vertex_count;
+    return face->mNumIndices == 3 && good_corners(face, vertex_count);
 }
 
 static void count_faces(const struct aiMesh *mesh, struct part *part, struct import_counts *counts)
@@ -374,6 +380,27 @@ static const struct aiScene *import(struct library *library)
     return scene;
 }
 
+/* Cuts polygons with an index out of range down to a triangle that has it, which is then counted as
+   bad: assimp's triangulation would read out of bounds. It aborts where no polygon is left. */
+static void cut_bad_polygons(const struct aiScene *scene)
+{
+    for (uint32_t i = 0; i < scene->mNumMeshes; i++) {
+        struct aiMesh *mesh = scene->mMeshes[i];
+        bool polygons = false;
+        for (uint32_t f = 0; f < mesh->mNumFaces; f++) {
+            struct aiFace *face = &mesh->mFaces[f];
+            for (uint32_t k = 3; k < face->mNumIndices; k++)
+                if (face->mIndices[k] >= mesh->mNumVertices)
+                    face->mIndices[0] = face->mIndices[k];
+            if (face->mNumIndices > 3 && !good_corners(face, mesh->mNumVertices))
+                face->mNumIndices = 3;
+            polygons |= face->mNumIndices > 3;
+        }
+        if (!polygons)
+            mesh->mPrimitiveTypes &= ~(unsigned)aiPrimitiveType_POLYGON;
+    }
+}
+
 /* Triangulates and writes the block of parts; gives the exit code. *scene is NULL where assimp has
    released it. */
 static int write_triangles(const struct aiScene **scene, const struct import_request *request,
@@ -381,6 +408,7 @@ static int write_triangles(const struct aiScene **scene, const struct import_req
 {
     struct flat flat = {.counts = *counts};
     int code = 1;
+    cut_bad_polygons(*scene);
     *scene = aiApplyPostProcessing(*scene, aiProcess_Triangulate);
     if (!*scene || !flatten(&flat, *scene, request))
         code = CHILD_EXIT_MEMORY; /* nothing else stops either step */

@@ -372,7 +372,6 @@ static const char *skip_instance(struct cursor *from, const struct header *heade
     return NULL;
 }
 
-/* Whether whit knows the sizes of all types. */
 static bool has_known_types(const struct header *header)
 {
     for (uint32_t i = 0; i < header->property_count; i++) {
@@ -412,7 +411,11 @@ whit_result ply_check_elements(const whit_log *log, const char *path, const uint
 {
     struct header header = {0};
     whit_result result = read_header(data, size_bytes, &header) ? WHIT_OK : WHIT_ERROR_MEMORY;
-    if (result == WHIT_OK && header.end <= size_bytes && has_known_types(&header))
+    if (result == WHIT_OK && !has_known_types(&header)) {
+        log_error(log, "%s: its header names a type of numbers that PLY does not have", path);
+        result = WHIT_ERROR_INPUT;
+    }
+    if (result == WHIT_OK && header.end <= size_bytes)
         result = check_elements(log, path, data, size_bytes, &header);
     header_finish(&header);
     return result;

@@ -13,8 +13,7 @@
 WHIT_CHECK whit_result ply_replace_strips(const whit_log *log, const char *path, uint8_t **data,
                                           size_t *size_bytes);
 /* Logs an error if an element of a file that ply_check accepted is cut short, missing, or a face
-   without corners: assimp 5.2 would crash, or draw what is left. A file with a type of numbers that
-   whit does not know is not checked. */
+   without corners, or if a type is unknown: assimp 5.2 would crash, or draw what is left. */
 WHIT_CHECK whit_result ply_check_elements(const whit_log *log, const char *path,
                                           const uint8_t *data, size_t size_bytes);
 

@@ -307,6 +307,8 @@ TEST_IN(faces_that_a_ply_lacks_are_told, fixture_begin, fixture_end)
         {FACES_HEADER("ascii") "0 0 0\n1 0\n0 1 0\n3 0 1 2\n3 0 1 2\n",
          "vertex 2 of 3 is cut short, missing or not of numbers"},
         {FACES_HEADER("ascii") "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n0\n", "face 2 of 2 has no corners"},
+        {"ply\nformat ascii 1.0\nelement vertex 0\nproperty flout x\nend_header\n",
+         "its header names a type of numbers that PLY does not have"},
         {FACES_HEADER("binary_big_endian") "123456789\3\1\1\1\3\1\1",
          "face 2 of 2 is cut short, missing or not of numbers"},
     };
@@ -316,6 +318,14 @@ TEST_IN(faces_that_a_ply_lacks_are_told, fixture_begin, fixture_end)
     }
     const char *whole = FACES_HEADER("ascii") "0 0 0\n1 0 0\n0 1 0\n\n3 0 1 2\r\n3 0 1 2";
     assert_int_equal(fixture_load(put_text("a.ply", whole)), WHIT_OK);
+}
+
+TEST_IN(polygons_of_missing_vertices_are_dropped, fixture_begin, fixture_end)
+{
+    const char *text = FACES_HEADER("ascii") "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n6 0 1 2 250 251 252\n";
+    assert_int_equal(fixture_load(put_text("a.ply", text)), WHIT_OK);
+    assert_true(fixture_noted("a.ply: 1 faces without area or with bad indices were dropped"));
+    assert_int_equal(fixture.scene->meshes[0].triangle_count, 1);
 }
 
 /* Writes a binary STL of two triangles and 7 more bytes, which says that it has `count`. */
