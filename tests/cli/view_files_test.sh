@@ -159,7 +159,7 @@ echo still >still.replay
 refuse 2 "a missing scene" "$OUT/nowhere.json: there is no such file" view "$OUT/nowhere.json"
 refuse 2 "a broken scene" "broken.json:$line:" view broken.json --frames 3
 refuse 2 "a broken glTF" "broken.gltf:" view broken.gltf --replay still.replay
-refuse 2 "a broken OBJ" "broken.obj: " view broken.obj --frames 3
+refuse 2 "a broken OBJ" "broken.obj:2: a face names vertex 2, and there are 1" view broken.obj --frames 3
 DISPLAY='' refuse 3 "no display" "no display .*whit render" view "$CUBE" --frames 3
 
 # A signal ends the viewer with 128 plus its number as the exit code.
