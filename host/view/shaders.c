@@ -32,8 +32,8 @@ static void watch_files(struct view *view)
         watch_add(view->shaders.watch, shown->info.files[i]);
 }
 
-/* Also watches the files that errors name, one error a line: "FILE:LINE: ...", and a file that an
-   #include names in vain. The failed version may include files that the shown one does not. */
+/* Also watches the files that errors name, one error a line: "FILE:LINE: ...", and included files
+   that are missing. The failed version may include files that the shown one does not. */
 static void watch_broken(struct view *view)
 {
     static const char include[] = "#include \"";

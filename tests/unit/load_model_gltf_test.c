@@ -474,41 +474,22 @@ static const char *write_skin(const char *attributes, const char *skins)
 #define BYTES(offset, more)                                                                        \
     "{\"bufferView\":0,\"byteOffset\":" #offset ",\"componentType\":5121,\"count\":3," more        \
     "\"type\":\"VEC4\"}"
+    static const char buffers[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":236,\"uri\":\"s.bin\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":236}],";
+    static const char accessors[] =
+        "\"accessors\":[" ACCESSOR(0, 3, "VEC3") "," ACCESSOR(36, 3, "VEC3") "," BYTES(
+            200, "") "," BYTES(212, "\"normalized\":true,") "," ACCESSOR(72, 2,
+                                                                         "MAT4") "," BYTES(224,
+                                                                                           "") "],";
     own_memory char *text = string_format(
-        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":236,\"uri\":"
-        "\"s.bin\"}],"
-        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":236}],\"accessors\":"
-        "[" ACCESSOR(0, 3, "VEC3") "," ACCESSOR(36, 3, "VEC3") "," BYTES(200, "") "," BYTES(
-            212, "\"normalized\":true,") "," ACCESSOR(72, 2, "MAT4") "," BYTES(224,
-                                                                               "") "],"
-                                                                                   "\"meshes\":[{"
-                                                                                   "\"primitives"
-                                                                                   "\":[{"
-                                                                                   "\"attributes"
-                                                                                   "\":{"
-                                                                                   "\"POSITION\":"
-                                                                                   "0,\"NORMAL\":"
-                                                                                   "1%s}}]}],"
-                                                                                   "\"nodes\":[{"
-                                                                                   "\"mesh\":0,"
-                                                                                   "\"skin\":0,"
-                                                                                   "\"translation"
-                                                                                   "\":[100,0,0]}"
-                                                                                   ","
-                                                                                   "{\"translatio"
-                                                                                   "n\":[0,0,5],"
-                                                                                   "\"children\":"
-                                                                                   "[2]},"
-                                                                                   "{\"translatio"
-                                                                                   "n\":[0,1,0],"
-                                                                                   "\"scale\":[4,"
-                                                                                   "2,2]},{}],"
-                                                                                   "\"scenes\":[{"
-                                                                                   "\"nodes\":[0,"
-                                                                                   "1]}],"
-                                                                                   "\"skins\":[%"
-                                                                                   "s]}",
-        attributes, skins);
+        "%s%s"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1%s}}]}],"
+        "\"nodes\":[{\"mesh\":0,\"skin\":0,\"translation\":[100,0,0]},"
+        "{\"translation\":[0,0,5],\"children\":[2]},"
+        "{\"translation\":[0,1,0],\"scale\":[4,2,2]},{}],"
+        "\"scenes\":[{\"nodes\":[0,1]}],\"skins\":[%s]}",
+        buffers, accessors, attributes, skins);
     assert_non_null(text);
     return put_text("s.gltf", text);
 }
@@ -552,6 +533,7 @@ TEST_IN(too_few_inverse_matrices_are_refused, fixture_begin, fixture_end)
 {
     fixture_refused(write_skin(INFLUENCES, "{\"joints\":[1,2,1],\"inverseBindMatrices\":4}"),
                     "skins[0]: has 3 joints and 2 inverseBindMatrices");
+}
 
 TEST_IN(lines_alone_are_refused, fixture_begin, fixture_end)
 {
