@@ -24,7 +24,8 @@ void change_surface(uint id, bool alive, inout Surface s)
     end_hook(true);
     vec3 sum = changed.ns + changed.color + vec3(changed.u, changed.v, changed.color_alpha);
     bool lost = any(isnan(sum)) || any(isinf(sum));
-    s.ns = normalize_or(changed.ns, s.ns);
+    if (changed.ns != s.ns) // else its bits stay, and with them the picture
+        s.ns = normalize_or(changed.ns, s.ns);
     s.color = changed.color;
     s.color_alpha = changed.color_alpha;
     s.u = changed.u;

@@ -87,6 +87,16 @@ TEST_IN(intersect_knows_the_pixel, begin, hooks_end)
         assert_true((fabsf(pixels[i][0] - 0.5f) < 1e-4f) == (i % WIDTH < 24));
 }
 
+TEST_IN(surface_that_changes_nothing_changes_no_bit, begin, hooks_end)
+{
+    const whit_renderer_params params = params_sized(WIDTH, HEIGHT, NULL);
+    own_whit_renderer *renderer = renderer_of(&params);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    own_whit_image *image = image_of(renderer, WHIT_AOV_COLOR);
+    draw("void surface(inout Surface s) {}\n", pixels);
+    assert_memory_equal(whit_image_floats(image), pixels, sizeof pixels);
+}
+
 TEST_IN(camera_directions_may_have_any_length, begin, hooks_end)
 {
     static const char *const factors[] = {"1e-38", "1e-30", "1e25", "3e37"};
