@@ -255,10 +255,10 @@ static uint32_t find_column(const struct shader_file *file, uint32_t line, const
 static void add_error_at(const struct place *place, const struct shader_file *file, uint32_t line,
                          const char *reason)
 {
-    uint32_t count = place->errors ? place->errors->count : 0;
-    shader_error_add(place->log, place->errors, file->name, line, "%s", reason);
-    if (place->errors && place->errors->count > count)
-        place->errors->items[count].column = find_column(file, line, reason);
+    struct shader_error error = {.line = line, .column = find_column(file, line, reason)};
+    snprintf(error.file, sizeof error.file, "%s", file->name);
+    snprintf(error.reason, sizeof error.reason, "%s", reason);
+    shader_error_put(place->log, place->errors, &error);
 }
 
 static void add_own_error(const struct place *place, const struct glslang_error *error,

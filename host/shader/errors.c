@@ -3,6 +3,23 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+void shader_error_put(const whit_log *log, struct shader_errors *errors,
+                      const struct shader_error *error)
+{
+    if (error->column)
+        log_error(log, "%s:%u:%u: %s", error->file, error->line, error->column, error->reason);
+    else if (error->line)
+        log_error(log, "%s:%u: %s", error->file, error->line, error->reason);
+    else
+        log_error(log, "%s: %s", error->file, error->reason);
+    if (!errors)
+        return;
+    if (errors->count < SHADER_ERROR_MAX)
+        errors->items[errors->count++] = *error;
+    else
+        errors->more++;
+}
+
 void shader_error_add(const whit_log *log, struct shader_errors *errors, const char *file,
                       uint32_t line, const char *format, ...)
 {
@@ -12,14 +29,5 @@ void shader_error_add(const whit_log *log, struct shader_errors *errors, const c
     va_start(args, format);
     vsnprintf(error.reason, sizeof error.reason, format, args);
     va_end(args);
-    if (line)
-        log_error(log, "%s:%u: %s", error.file, line, error.reason);
-    else
-        log_error(log, "%s: %s", error.file, error.reason);
-    if (!errors)
-        return;
-    if (errors->count < SHADER_ERROR_MAX)
-        errors->items[errors->count++] = error;
-    else
-        errors->more++;
+    shader_error_put(log, errors, &error);
 }

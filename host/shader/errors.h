@@ -24,8 +24,11 @@ struct shader_errors {
     uint32_t more; /* number of further errors, which were not kept */
 };
 
-/* Keeps an error and logs it as "FILE:line: reason", or "FILE: reason" if `line` is 0. `errors` may
-   be NULL. */
+/* Keeps an error and logs it as "FILE:line:column: reason", or without what is 0. `errors` may be
+   NULL. */
+void shader_error_put(const whit_log *log, struct shader_errors *errors,
+                      const struct shader_error *error);
+/* The same, with a reason to be formatted and no column. */
 void shader_error_add(const whit_log *log, struct shader_errors *errors, const char *file,
                       uint32_t line, const char *format, ...) WHIT_PRINTF(5, 6);
 

@@ -298,15 +298,18 @@ TEST_IN(errors_name_the_line, compiler_begin, compiler_end)
         assert_true(errors.count >= 1);
         const struct shader_error *error = &errors.items[0];
         bool own = broken[i].line == 0;
+        uint32_t column = own ? 0 : column_of(error, broken[i].content);
         char place[64];
         snprintf(place, sizeof place,
-                 own ? "whit:kernel/test.comp:13: " : "a.glsl:%u: ", broken[i].line);
+                 own      ? "whit:kernel/test.comp:13: "
+                 : column ? "a.glsl:%u:%u: "
+                          : "a.glsl:%u: ",
+                 broken[i].line, column);
         bool right =
             strcmp(error->file, own ? "whit:kernel/test.comp" : "a.glsl") == 0 &&
             error->line == (own ? 13 : broken[i].line) && strstr(error->reason, broken[i].reason) &&
             strncmp(messages.text, place, strlen(place)) == 0 &&
             !strstr(messages.text, "compilation terminated") && !strstr(messages.text, "No code");
-        uint32_t column = own ? 0 : column_of(error, broken[i].content);
         columns += column != 0;
         right = right && error->column == column;
         if (!right)
@@ -345,9 +348,9 @@ TEST_IN(lines_are_right_through_two_levels, compiler_begin, compiler_end)
     errors.count = 0;
     assert_int_equal(shader_text_from(&warnings_log, whole, 3, &text, &errors), WHIT_OK);
     assert_int_equal(shader_compile(compiler, &text, &request, &code, &errors), WHIT_ERROR_INPUT);
-    assert_non_null(strstr(messages.text, "lib/c.glsl:4: 'missing_c'"));
-    assert_non_null(strstr(messages.text, "lib/b.glsl:3: 'missing_b'"));
-    assert_non_null(strstr(messages.text, "a.glsl:4: 'missing_a'"));
+    assert_non_null(strstr(messages.text, "lib/c.glsl:4:14: 'missing_c'"));
+    assert_non_null(strstr(messages.text, "lib/b.glsl:3:27: 'missing_b'"));
+    assert_non_null(strstr(messages.text, "a.glsl:4:11: 'missing_a'"));
     shader_text_free(&text);
 }
 

@@ -55,7 +55,7 @@ static int end(void **state)
     return folder_end(state);
 }
 
-/* Whether a line of the log names the place, "a.glsl:2: ", where it is not NULL, and behind it the
+/* Whether a line of the log names the place, "a.glsl:2:", where it is not NULL, and behind it the
  * reason. */
 static bool is_told(const char *place, const char *reason)
 {
@@ -124,46 +124,46 @@ TEST_IN(texts_that_mean_harm_are_refused, begin, end)
         const char *name, *content, *place, *reason;
     } cases[] = {
         {"recursion", "float f(float x) {\n return f(x); }\n" POST " return color * f(1.0); }\n",
-         "a.glsl:1: ", "f calls itself"},
+         "a.glsl:1:", "f calls itself"},
         {"mutual recursion",
          "float g(float x);\nfloat f(float x) { return g(x); }\nfloat g(float x) { return f(x); "
          "}\n" POST " return color * f(1.0); }\n",
          "a.glsl:", "which leads back to it"},
         {"an array of 10 GB", POST " float a[2684354560];\n return color * a[at.x]; }\n",
-         "a.glsl:2: ", "array size"},
+         "a.glsl:2:", "array size"},
         {"an array of 8 GB", POST " float a[2000000000]; a[1] = 1.0;\n return color * a[at.x]; }\n",
-         "a.glsl:1: ", "variables of more than 16 KiB"},
+         "a.glsl:1:", "variables of more than 16 KiB"},
         {"a global array of 4 MB",
          "\nfloat a[1000000];\n" POST " a[1] = 1.0; return color * a[at.x]; }\n",
-         "a.glsl:2: ", "variables of more than 16 KiB"},
+         "a.glsl:2:", "variables of more than 16 KiB"},
         {"the index -1", POST " float a[4];\n return color * a[-1]; }\n",
-         "a.glsl:3: ", "index out of range"},
+         "a.glsl:3:", "index out of range"},
         {"the index 2^31", POST " float a[4];\n return color * a[2147483648u]; }\n",
-         "a.glsl:3: ", "out of range"},
-        {"discard", POST " discard;\n return color; }\n", "a.glsl:2: ", "discard"},
+         "a.glsl:3:", "out of range"},
+        {"discard", POST " discard;\n return color; }\n", "a.glsl:2:", "discard"},
         {"discard in a loop of another function",
          "void f() {\n for (int i = 0; i < 2; ++i)\n  if (i == 1) discard;\n}\n" POST
          " f(); return color; }\n",
-         "a.glsl:3: ", "discard"},
+         "a.glsl:3:", "discard"},
         {"barrier", POST " if (at.x == 1)\n barrier();\n return color; }\n",
-         "a.glsl:3: ", "barrier"},
-        {"return of nothing", POST " return;\n}\n", "a.glsl:2: ", "return"},
+         "a.glsl:3:", "barrier"},
+        {"return of nothing", POST " return;\n}\n", "a.glsl:2:", "return"},
         {"return outside of functions", "return 1;\n" POST " return color; }\n",
-         "a.glsl:1: ", "RETURN"},
+         "a.glsl:1:", "RETURN"},
         {"no return", POST " color *= 2.0;\n}\n", "a.glsl:", "return"},
-        {"#version 100", "#version 100\n" POST " return color; }\n", "a.glsl:1: ", "version"},
+        {"#version 100", "#version 100\n" POST " return color; }\n", "a.glsl:1:", "version"},
         {"an empty file", "", "a.glsl: ", "it has no function"},
         {"an include of itself", "#include \"a.glsl\"\n" POST " return color; }\n",
-         "a.glsl:1: ", "itself"},
+         "a.glsl:1:", "itself"},
         {"a circle of includes", "\n#include \"b.glsl\"\n" POST " return color; }\n",
          "b.glsl:1: ", "include each other"},
         {"an include of a folder", "\n#include \"folder\"\n" POST " return color; }\n",
-         "a.glsl:2: ", "folder"},
+         "a.glsl:2:", "folder"},
         {"an include of /dev/zero", "#include \"/dev/zero\"\n" POST " return color; }\n",
-         "a.glsl:1: ", "/dev/zero"},
+         "a.glsl:1:", "/dev/zero"},
         {"a link to /dev/zero", "#include \"zero\"\n" POST " return color; }\n",
-         "a.glsl:1: ", "zero"},
-        {"a pipe", "#include \"pipe\"\n" POST " return color; }\n", "a.glsl:1: ", "pipe"},
+         "a.glsl:1:", "zero"},
+        {"a pipe", "#include \"pipe\"\n" POST " return color; }\n", "a.glsl:1:", "pipe"},
     };
     put_text("b.glsl", "#include \"a.glsl\"\n");
     assert_int_equal(mkdir(in_folder("folder"), 0777), 0);
@@ -189,9 +189,9 @@ TEST_IN(texts_that_mean_harm_are_refused, begin, end)
     refuse_repeated("a sum of 10^5 terms", POST " return color", " + color\n", 100000, "; }\n",
                     "a.glsl", "");
     refuse_repeated("a line of 1 MB", POST " return color", " + color", 125000, "; }\n",
-                    "a.glsl:2: ", "a line of more than 65536 bytes");
+                    "a.glsl:2:", "a line of more than 65536 bytes");
     refuse_repeated("a name of 1 MB", "float ", "x", 1000000, ";\n" POST " return color; }\n",
-                    "a.glsl:1: ", "a line of more than 65536 bytes");
+                    "a.glsl:1:", "a line of more than 65536 bytes");
     all_are_reported();
 }
 
@@ -259,10 +259,10 @@ TEST_IN(loops_without_end_have_no_picture, begin, end)
     assert_int_equal(draw(shader, "loop=none", pixels), WHIT_OK);
     static const struct {
         const char *name, *place;
-    } cases[] = {{"for", "a.glsl:10: "},    {"while", "a.glsl:11: "},   {"do", "a.glsl:12: "},
-                 {"nested", "a.glsl:14: "}, {"camera", "a.glsl:3: "},   {"shade", "a.glsl:5: "},
-                 {"miss", "a.glsl:8: "},    {"surface", "a.glsl:17: "}, {"scatter", "a.glsl:19: "},
-                 {"aov", "a.glsl:22: "}};
+    } cases[] = {{"for", "a.glsl:10:"},    {"while", "a.glsl:11:"},   {"do", "a.glsl:12:"},
+                 {"nested", "a.glsl:14:"}, {"camera", "a.glsl:3:"},   {"shade", "a.glsl:5:"},
+                 {"miss", "a.glsl:8:"},    {"surface", "a.glsl:17:"}, {"scatter", "a.glsl:19:"},
+                 {"aov", "a.glsl:22:"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         char sliders[32];
         snprintf(sliders, sizeof sliders, "loop=%s", cases[i].name);
@@ -279,7 +279,7 @@ TEST_IN(all_of_the_most_fuel_may_be_used, begin, end)
                                "  color.r += 1e-9;\n return color; }\n");
     float pixels[PIXELS * 4];
     assert_int_equal(draw(shader, NULL, pixels), WHIT_OK);
-    fail_to_draw(shader, "more=on", "a.glsl:4: ", "fuel");
+    fail_to_draw(shader, "more=on", "a.glsl:4:", "fuel");
     whit_shader_destroy(shader);
     all_are_reported();
 }
