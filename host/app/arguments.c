@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/path.h"
 #include "base/text.h"
 #include "settings/quote.h"
 
@@ -361,13 +362,34 @@ bool cli_check_output(struct cli_reader *reader, const char *option, const char 
     return cli_no_dash(reader, option, path, hint) && cli_check_writable(reader, path);
 }
 
-/* Whether both name one file, under whatever names. Devices such as /dev/null are no files. */
+static bool are_same(const struct stat *a, const struct stat *b)
+{
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
+/* Whether both names, of files that need not exist yet, mean one entry of one folder. */
+static bool are_one_entry(const char *a, const char *b)
+{
+    struct stat first, second;
+    char *folders[2] = {path_folder(a), path_folder(b)};
+    bool same = folders[0] && folders[1] && strcmp(path_name(a), path_name(b)) == 0 &&
+                stat(folders[0][0] ? folders[0] : ".", &first) == 0 &&
+                stat(folders[1][0] ? folders[1] : ".", &second) == 0 && are_same(&first, &second);
+    free(folders[0]);
+    free(folders[1]);
+    return same;
+}
+
+/* Whether both name one file, under whatever names. What several outputs may go to, /dev/null, is
+   none. */
 static bool are_one_file(const char *a, const char *b)
 {
     struct stat first, second;
+    if (strcmp(a, b) == 0)
+        return strcmp(a, "/dev/null") != 0;
     if (stat(a, &first) != 0 || stat(b, &second) != 0)
-        return strcmp(a, b) == 0;
-    return S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+        return are_one_entry(a, b);
+    return S_ISREG(first.st_mode) && are_same(&first, &second);
 }
 
 bool cli_check_apart(struct cli_reader *reader, const struct cli_file *files, uint32_t count)

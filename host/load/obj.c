@@ -252,8 +252,8 @@ whit_result obj_check_faces(struct scene *scene, const char *path, const char *t
 
 /* --- smoothing groups ----------------------------------------------------------------------- */
 
-/* Writes a face whose corners have the last normal above it. */
-static void write_face(FILE *file, const char *at, const char *end)
+/* Writes a face whose corners have the last normal above it, or (`smooth` is false) none. */
+static void write_face(FILE *file, const char *at, const char *end, bool smooth)
 {
     fputc('f', file);
     for (at += strcspn(at, " \t\n"); at < end;) {
@@ -261,7 +261,12 @@ static void write_face(FILE *file, const char *at, const char *end)
         size_t bytes = strcspn(at, " \t\n");
         const char *slash = memchr(at, '/', bytes), *last = at + bytes;
         const char *second = slash ? memchr(slash + 1, '/', (size_t)(last - slash - 1)) : NULL;
-        fprintf(file, " %.*s%s-1", (int)((second ? second : last) - at), at, slash ? "/" : "//");
+        const char *stop = second ? second : last;
+        if (!smooth && second == slash + 1)
+            stop = slash; /* `1//3` becomes `1` */
+        fprintf(file, " %.*s", (int)(stop - at), at);
+        if (smooth)
+            fputs(slash ? "/-1" : "//-1", file);
         at = last;
     }
 }
@@ -278,10 +283,11 @@ static bool write_groups(FILE *file, const char *text)
             unsigned long number = strtoul(name, NULL, 10); /* 0: `on` */
             smooth = !off;
             found |= smooth;
-            if (smooth)
-                fprintf(file, "vn %lu 0 0", number ? number : 1);
-        } else if (smooth && *at == 'f') {
-            write_face(file, at, end);
+            number = number ? number : 1;
+            if (smooth) /* in two floats, which have 24 bits each */
+                fprintf(file, "vn %lu %lu 0", 1 + (number & 0x3fffff), number >> 22);
+        } else if (*at == 'f') {
+            write_face(file, at, end, smooth);
         } else {
             fwrite(at, 1, (size_t)(end - at), file);
         }

@@ -21,9 +21,10 @@ uint32_t obj_longest_face(const char *text);
    and normals that are not there are noted: assimp 5.2 then drops them for the whole group. */
 WHIT_CHECK whit_result obj_check_faces(struct scene *scene, const char *path, const char *text);
 
-/* In a repaired text with smoothing groups and no normals, puts the normal (N, 0, 0) in the place
-   of `s N`, and gives it to the corners of the faces below; parts_smooth reads it, since assimp 5.2
-   skips `s`. Replaces *data, as above. *has_groups: whether it did. */
+/* In a repaired text with smoothing groups and no normals, puts a normal that stands for the group
+   (its x is above 0) in the place of `s N`, and gives it to the corners of the faces below, or none
+   below `s off`; parts_smooth reads it, since assimp 5.2 skips `s`. Replaces *data, as above.
+   *has_groups: whether it did. */
 WHIT_CHECK bool obj_mark_smooth_groups(uint8_t **data, size_t *size_bytes, bool *has_groups);
 
 /* Reads the material libraries that the text names; if it names none, the one that is called like

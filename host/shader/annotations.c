@@ -216,12 +216,20 @@ static bool is_keyword(const char *name)
         "volatile while writeonly ";
     static const char *const types[] = {"vec", "bvec", "ivec",    "uvec",  "dvec",
                                         "mat", "dmat", "sampler", "image", "texture"};
+    enum { VECTORS = 5, MATRICES = 2 };
     char word[SHADER_NAME_BYTES + 2];
     snprintf(word, sizeof word, " %s ", name);
-    for (size_t i = 0; i < sizeof types / sizeof *types; ++i) { /* as in mat3, mat2x4, image2D */
+    for (size_t i = 0; i < sizeof types / sizeof *types; ++i) {
         size_t length = strlen(types[i]);
-        if (strncmp(name, types[i], length) == 0 && isdigit((unsigned char)name[length]) &&
-            (!name[length + 1] || strchr("xD", name[length + 1])))
+        if (strncmp(name, types[i], length) != 0)
+            continue;
+        const char *rest = name + length; /* as in vec3, mat2x4, image2D */
+        bool sized = rest[0] >= '2' && rest[0] <= '4';
+        bool by = rest[0] && rest[1] == 'x' && rest[2] >= '2' && rest[2] <= '4' && !rest[3];
+        bool of_dimension = rest[0] >= '1' && rest[0] <= '3' && rest[1] == 'D' && !rest[2];
+        if (i < VECTORS              ? sized && !rest[1]
+            : i < VECTORS + MATRICES ? sized && (!rest[1] || by)
+                                     : of_dimension)
             return true;
     }
     return strstr(words, word);

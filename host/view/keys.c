@@ -273,8 +273,9 @@ static void say_speed(const struct view *view, char *text, size_t bytes)
 static void turn_scene(struct view *view, int by)
 {
     char path[SETTING_PATH_BYTES];
-    if (!is_input(view->settings.scene) &&
-        scene_folder_find(view->settings.scene, by, path, sizeof path))
+    /* From the scene that was asked for last, so that one that cannot be loaded is passed. */
+    const char *from = view->asked[0] ? view->asked : view->settings.scene;
+    if (!is_input(from) && scene_folder_find(from, by, path, sizeof path))
         view_open(view, path);
     else
         view_say(view, "no other scene beside this one");

@@ -88,7 +88,9 @@ expect 0 "with a reason" check looks.whit --accept 'balls-*' --reason "two bounc
 check "it is shown first" grep -q "^balls-watertight: differs: " stdout
 check "it is kept" test "$(grep -c ' why two bounces less$' looks.golden)" -eq 2
 expect 0 "as it is now" check looks.whit
-refuse 2 "two outputs in one file" "x: --json and --junit name the same file" check looks.whit --json x --junit x
+refuse 2 "two outputs in one file" "x: --json and --junit name the same file" check looks.whit --json ./x --junit x
+refuse 2 "two outputs in one pipe" "--json and --junit name the same file" check looks.whit --json /dev/stdout --junit /dev/stdout
+expect 0 "nowhere" check looks.whit --json /dev/null --junit /dev/null
 ln looks.golden link
 refuse 2 "an output in the golden" "link: the golden and --report name the same file" check looks.whit --report link
 rm link

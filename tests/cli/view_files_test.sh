@@ -21,14 +21,16 @@ if part 0 2; then
     cp "$SCENES/8k.json" list/b.json
     cp "$SCENES/spin.json" list/c.json
     echo no scene >list/notes.txt
+    echo no scene >list/b0.json
     echo "--size 96x64" >start.view
     echo "--size 96x64 --effects -highlights" >plain.view
     echo "--size 96x64 --edges triangles" >edges.view
-    EXPECTED="^whit: error: \($OUT/nowhere\|$SCENES/atrium.json: objects\)"
+    EXPECTED="^whit: error: \($OUT/nowhere\|$SCENES/atrium.json: objects\|.*list/b0.json:\)"
     play "scenes by arrows" list/a.json $SMALL --memory-limit 12M <<END
 a: | scene = list/a.json
 b: press Right | scene = list/b.json | frame.ids not as a
-c: press Right | scene = list/c.json
+b0! press Right, until error | scene = list/b.json
+c: press Right | scene = list/c.json | error =
 around: press Right | scene = list/a.json | frame.ids as a
 back: press Left | scene = list/c.json | frame.ids as c
 stepped: press Period
@@ -49,7 +51,7 @@ plain: drop plain.view | compare.other_ids = 0 | compare.other_colors > 0
 copied! press Ctrl+C | toast has copied: whit render $SCENES/cube.json | toast has -highlights
 mended: press F12, press I, drop start.view, drop list/b.json | error = | frame.ids as b
 END
-    check "each once on standard error" test "$(grep -v memory-limit "$OUT/stderr" | sort | tr '\n' ' ')" = \
+    check "each once on standard error" test "$(grep -v "memory-limit\|b0.json" "$OUT/stderr" | sort | tr '\n' ' ')" = \
         "whit: error: $OUT/nowhere.json: there is no such file whit: error: $OUT/nowhere.obj: there is no such file "
     check "and what takes too much" test "$(grep -c memory-limit "$OUT/stderr")" -eq 1
     check "F12 saves it" grep -aq "whit render .*/cube.json .*-highlights" whit-0001.png

@@ -174,7 +174,8 @@ TEST_IN(smoothing_groups_make_normals, fixture_begin, fixture_end)
 TEST_IN(smoothing_groups_have_edges_between_them, fixture_begin, fixture_end)
 {
     const char *path =
-        put_text("a.obj", CORNER "s 1\nf 1 3 5 2\ns 2\nf 1 4 6 3\ns off\nf 1 2 7 4\n");
+        put_text("a.obj", CORNER "s 16777216\nf 1 3 5 2\ns 16777217\nf 1 4 6 3\ns off\n"
+                                 "f 1//1 2//2 7//1 4//1\n");
     assert_int_equal(fixture_load(path), WHIT_OK);
     assert_non_null(only_mesh()->normals);
     assert_float_equal(normal_at(only_mesh(), 0, 0, 0)[2], -1, 0);

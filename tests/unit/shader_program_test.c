@@ -128,20 +128,22 @@ TEST(values_of_another_version_are_dropped)
     shader_text_free(&shader.text);
 }
 
-/* What `#if 0` leaves out is nothing for whit either; images2D is no word of GLSL. */
+/* What `#if 0` leaves out is nothing for whit either. Names that are nearly types are no words of
+ * GLSL. */
 TEST(code_that_is_left_out_counts_for_nothing)
 {
     whit_shader shader;
     assert_int_equal(read_text("#if 0\n//@ slider a 0 1 0\n#include \"nowhere.glsl\"\n#if 1\n"
                                "//@ toggle b\n#endif\nvec3 post(int at) { return at; }\n#else\n"
-                               "//@ toggle images2D\n#endif\n#if 1\n//@ toggle c\n#endif\n"
+                               "//@ toggle images2D\n//@ toggle texture1\n//@ toggle "
+                               "vec2x\n#endif\n#if 1\n//@ toggle c\n#endif\n"
                                "vec3 miss(vec3 dir) { return dir; }\n",
                                &shader),
                      WHIT_OK);
-    assert_int_equal(shader.slider_count, 2);
+    assert_int_equal(shader.slider_count, 4);
     assert_string_equal(shader.sliders[0].name, "images2D");
     assert_int_equal(shader.slider_texts[0].line, 9);
-    assert_string_equal(shader.sliders[1].name, "c");
+    assert_string_equal(shader.sliders[3].name, "c");
     assert_false(shader_text_defines(&shader.text, "post", NULL, NULL));
     shader_text_free(&shader.text);
 }

@@ -124,13 +124,20 @@ static bool is_of_kind(const struct check *check, const char *path, const json_t
     return false;
 }
 
+/* Whether a path tells nothing of the folders it leads through: an absolute one, which may be that
+   of another machine, and one with a part `.` or `..`. */
+static bool is_from_elsewhere(const char *path)
+{
+    return path[0] == '/' || strncmp(path, "./", 2) == 0 || strncmp(path, "../", 3) == 0 ||
+           strstr(path, "/./") || strstr(path, "/../");
+}
+
 /* Whether two paths may be of the same suite. They may be named from different folders, so that one
-   is the end of the other. Of absolute paths, which may be those of different machines, only the
-   file's name is compared. */
+   is the end of the other. */
 static bool may_be_same(const char *a, const char *b)
 {
     const char *a_at = a + strlen(a), *b_at = b + strlen(b);
-    if (a[0] == '/' || b[0] == '/')
+    if (is_from_elsewhere(a) || is_from_elsewhere(b))
         return strcmp(path_name(a), path_name(b)) == 0;
     while (a_at > a && b_at > b && a_at[-1] == b_at[-1]) {
         --a_at;
