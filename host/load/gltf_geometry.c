@@ -347,8 +347,7 @@ static whit_result load_skinned(struct geometry *geometry, uint32_t node)
     return result;
 }
 
-/* Notes what is not drawn; logs an error if there are only lines and points, as of other formats.
- */
+/* Notes what is not drawn. Only lines and points are an error, as in other formats. */
 static whit_result note_dropped(const struct geometry *geometry)
 {
     const char *name = path_name(geometry->gltf->request->path);

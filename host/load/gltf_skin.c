@@ -81,8 +81,8 @@ static bool read_attribute(const struct gltf *gltf, const struct gltf_primitive 
     return gltf_read_floats(gltf, index, 4, out, &count);
 }
 
-/* Where a vertex moves, by its four joints and weights, which need not have the sum 1. Without
-   weights it follows the first joint. */
+/* Sets *out to the mean of the moves of a vertex's four joints by their weights, whose sum need not
+   be 1. A vertex without weights follows the first joint. */
 static bool blend(const struct gltf *gltf, const struct gltf_place *at,
                   const struct gltf_skin *skin, const float *joints, const float *weights,
                   struct affine *out)

@@ -170,7 +170,8 @@ uint32_t obj_longest_face(const char *text)
     return longest;
 }
 
-/* What a face may name, in the order of its corners' indices: `v`, `vt` and `vn`. */
+/* The kinds of lines that the corners of a face name by numbers, in the order in which a corner has
+   them: `v`, `vt` and `vn`. */
 enum { NAMED_KINDS = 3 };
 
 /* The kind of a line that adds something that faces may name; NAMED_KINDS: a face; else -1. */

@@ -292,9 +292,10 @@ bool parts_smooth(struct part *parts, uint32_t count)
                     length > 0 ? (float)(sum[axis] / length) : 0;
         }
     }
+    ok = sums != NULL;
     free(sums);
     part_finish(&joined);
-    return sums;
+    return ok;
 }
 
 /* --- parts of a mesh ------------------------------------------------------------------------- */

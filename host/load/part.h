@@ -18,10 +18,11 @@ size_t part_count(const struct part *part, enum import_array array);
 void *part_add(struct part *part, enum import_array array);
 /* A read-only view of the part, without its names. */
 struct import_part part_view(const struct part *part);
-/* Replaces normals with x > 0, which mark smoothing groups by x (obj_mark_smooth_groups), by the
-   normals of their group: in each point the sum of the normals of its triangles, weighted by their
-   angles there (Thuermer and Wuethrich 1998, Computing vertex normals from polygonal facets).
-   Points are joined by their positions, across parts. False when memory runs out. */
+/* Replaces normals with x > 0, each of which stands for a smoothing group (obj_mark_smooth_groups),
+   by the normals of the surface of that group: in each point the sum of the normals of its
+   triangles, weighted by their angles there (Thuermer and Wuethrich 1998, Computing vertex normals
+   from polygonal facets). Points are joined by their positions, across parts. False when memory
+   runs out. */
 bool parts_smooth(struct part *parts, uint32_t count);
 /* Completes the normals of all parts of one mesh: zero normals are replaced by those of the faces,
    and parts without normals get flat ones where another part has normals. `corners`: parts have a

@@ -39,8 +39,8 @@ struct check {
 /* Whether one of the patterns is `name`; "all" stands for every name. */
 bool check_names_match(const struct check_names *names, const char *name);
 
-/* Where lines for people go: standard output, or standard error where a report goes to standard
-   output. */
+/* The stream on which lines for people are printed: standard output, or standard error if a report
+   is written to standard output. */
 static inline FILE *check_lines(const struct check *check)
 {
     const char *const reports[] = {check->json, check->junit, check->report};
