@@ -183,8 +183,9 @@ static void note_lost(const struct gltf *gltf, const struct gltf_primitive *prim
                    promised - part->triangle_count, promised);
 }
 
-/* Checks the memory limit before arrays are allocated: many primitives may share one accessor, so
-   the file's size does not bound them. */
+/* Checks the memory limit before arrays are allocated and filled, also for what the scene makes of
+   them: many primitives may share one accessor, and an accessor may have no data, so the file's
+   size does not bound them. */
 static bool afford(const struct gltf *gltf, const struct gltf_primitive *primitive,
                    struct mesh *mesh)
 {
@@ -197,7 +198,10 @@ static bool afford(const struct gltf *gltf, const struct gltf_primitive *primiti
         words += (uint64_t)accessor->count *
                  (i == IMPORT_INDICES ? 1 : importer_array_words((enum import_array)i));
     }
-    bool good = scene_afford(gltf->scene, words * 4, "%s of %u vertices", primitive->at.text,
+    uint64_t later =
+        scene_triangle_cost(triangles_of(primitive), primitive->vertex_count, 3 * sizeof(float));
+    bool good = scene_could_afford(gltf->scene, &gltf->scene->log, later, primitive->at.text) &&
+                scene_afford(gltf->scene, words * 4, "%s of %u vertices", primitive->at.text,
                              primitive->vertex_count);
     mesh->counted_bytes += good ? words * 4 : 0;
     return good;

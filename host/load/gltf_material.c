@@ -132,21 +132,33 @@ static bool read_volume(struct reading *r, const json_t *volume)
     return true;
 }
 
+/* glTF forbids KHR_materials_ior beside pbrSpecularGlossiness, whose F0 does not depend on it. */
+static whit_result read_ior(struct reading *r)
+{
+    json_t *ior, *glossy;
+    float value = r->out->ior;
+    if (extension(r, "KHR_materials_ior", &ior) != WHIT_OK ||
+        extension(r, "KHR_materials_pbrSpecularGlossiness", &glossy) != WHIT_OK ||
+        !number(r, ior, "ior", 0, 1e6, &value))
+        return WHIT_ERROR_INPUT;
+    if (value < 1) /* KHR_materials_ior: 0 means a mirror at every angle */
+        value = value > 0 ? 1.0f : 1e3f;
+    if (!glossy)
+        r->out->ior = value;
+    return WHIT_OK;
+}
+
 /* Sets transmission to the factor alone: for METAL_ROUGH the renderer itself tints transmitted
    light by the base colour. */
 static whit_result read_transmission(struct reading *r)
 {
-    json_t *object, *volume, *ior;
+    json_t *object, *volume;
     float factor = 0;
     struct scene_material *out = r->out;
     if (extension(r, "KHR_materials_transmission", &object) != WHIT_OK ||
         extension(r, "KHR_materials_volume", &volume) != WHIT_OK ||
-        extension(r, "KHR_materials_ior", &ior) != WHIT_OK ||
-        !number(r, ior, "ior", 0, 1e6, &out->ior) ||
         !number(r, object, "transmissionFactor", 0, 1, &factor))
         return WHIT_ERROR_INPUT;
-    if (out->ior < 1) /* KHR_materials_ior: 0 means a mirror at every angle */
-        out->ior = out->ior > 0 ? 1.0f : 1e3f;
     if (!object || factor <= 0 || out->model == WHIT_MODEL_UNLIT)
         return WHIT_OK;
     for (int i = 0; i < 3; i++)
@@ -257,8 +269,8 @@ static void note_ignored(const struct gltf *gltf)
 static whit_result read_material(struct gltf *gltf, uint32_t index, struct scene_material *out)
 {
     static whit_result (*const steps[])(struct reading *) = {
-        read_metal_rough, read_emission,     read_normal_map,   read_alpha,
-        read_specular,    read_other_models, read_transmission,
+        read_metal_rough, read_emission, read_normal_map,   read_alpha,
+        read_specular,    read_ior,      read_other_models, read_transmission,
     };
     struct reading reading = {.gltf = gltf, .out = out};
     json_t *object;

@@ -13,8 +13,9 @@
 WHIT_CHECK whit_result ply_check(const whit_log *log, const char *path, const uint8_t *data,
                                  size_t size_bytes);
 /* assimp 5.2 mistakes a first data byte of 10, as in one binary file of 256, for the end of the
-   header's last line. Adds one more such byte there. Replaces *data (malloc'ed). False when memory
-   runs out; *data is then intact. */
+   header's last line: adds one more such byte there. It also loses an element for each blank line
+   between elements of an ASCII file: removes these lines. Replaces *data (malloc'ed, with a zero
+   byte behind it). False when memory runs out; *data is then intact. */
 WHIT_CHECK bool ply_repair(uint8_t **data, size_t *size_bytes);
 
 #endif

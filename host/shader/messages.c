@@ -264,6 +264,10 @@ static void take_error(struct glslang_answer *answer, const struct glslang_quest
     if (strncmp(why, "'dbg': no matching", 18) == 0 && strstr(question->text, "#define HAS_DBG\n"))
         snprintf(why, sizeof why,
                  "dbg(x) takes a float, int, uint, bool or a vector of two to four of these");
+    if (strstr(why, "same parameter storage qualifiers"))
+        snprintf(why, sizeof why,
+                 "parameters of whit's functions are `in` or `inout`, as `whit shader new` prints "
+                 "them, and never `const`");
     if (strcmp(why, "memory exhausted") == 0) /* bison's words for a full stack */
         snprintf(why, sizeof why, "brackets or blocks that are too deep");
     if (!strstr(why, "compilation terminated") && !strstr(why, "compilation errors.") && why[0])

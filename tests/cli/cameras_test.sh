@@ -41,7 +41,7 @@ lines '{"eye": [1, 2, 3]}
 {"eye": [0, 0, 0]}' "bad.json:2:1: .eye. and .target. are the same point"
 lines '{"fovv": 3}' "bad.json:1:2: fovv: unknown key; did you mean .fov."
 lines '{"animation": {}}' "bad.json:1:2: animation: cameras of views stand still"
-for option in "--camera 0" "--frames 0-1" "--tile 1/2" "--resume" "--aa adaptive:0.1" "--view depth" "--shader x.glsl"; do
+for option in "--camera 0" "--frames 0-1" "--tile 1/2" "--resume" "--aa adaptive:0.1" "--view depth" "--shader x.glsl" "--stages x"; do
     # shellcheck disable=SC2086
     refuse 2 "$option" "--cameras and ${option%% *}.* do not go together" render scene.json --cameras cameras.json -o x.#.png $option
 done

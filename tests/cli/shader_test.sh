@@ -234,6 +234,9 @@ broken "other parameters" 2 "shade has other parameters .* .whit shader new shad
 float f() { return 1.0; }
 vec3 shade(Surface s, vec3 to_eye) { return vec3(f()); }
 END
+broken "const" 1 "parameters .* never .const." <<'END'
+vec3 miss(const vec3 dir) { return dir; }
+END
 echo 'float f() { return 1.0; }' >none.glsl
 expect 2 "no hook" shader none.glsl
 said "says which there are" "none of the functions camera, surface"

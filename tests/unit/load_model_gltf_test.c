@@ -284,7 +284,8 @@ TEST_IN(specular_colors_are_f0, fixture_begin, fixture_end)
                       "\"baseColorFactor\":[1,1,1,0.25]},\"extensions\":"
                       "{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":[0.8,0.4,0,1],"
                       "\"specularFactor\":[0.25,0.5,0],\"glossinessFactor\":0.75}}},"
-                      "{\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{"
+                      "{\"extensions\":{\"KHR_materials_ior\":{\"ior\":1},"
+                      "\"KHR_materials_pbrSpecularGlossiness\":{"
                       "\"specularFactor\":[0,0,0],\"glossinessFactor\":0}}}]");
     const struct scene_material *m = &scene->materials[0];
     assert_int_equal(m->model, WHIT_MODEL_METAL_ROUGH);
@@ -295,6 +296,7 @@ TEST_IN(specular_colors_are_f0, fixture_begin, fixture_end)
     assert_float_equal(m->opacity, 0.25, 0);
     assert_float_equal(scene->materials[1].diffuse[0], 1, 0);
     assert_float_equal(scene->materials[1].specular_level, 0, 0);
+    assert_float_equal(scene->materials[1].ior, 1.5, 0);
 }
 
 TEST_IN(faces_have_one_side_unless_said, fixture_begin, fixture_end)

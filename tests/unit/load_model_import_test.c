@@ -181,6 +181,36 @@ TEST_IN(colors_of_scans, fixture_begin, fixture_end)
     assert_float_equal(mesh->colors[4 * mesh->indices[1] + 1], 0.2158605, 1e-5); /* sRGB 128 */
 }
 
+/* Blank lines between elements, of which assimp loses one for each. */
+TEST_IN(blank_lines_in_a_ply, fixture_begin, fixture_end)
+{
+    static const char *const ends[] = {"\n", "\r\n"};
+    static const char *const header[] = {"ply",
+                                         "format ascii 1.0",
+                                         "element vertex 4",
+                                         "property float x",
+                                         "property float y",
+                                         "property float z",
+                                         "element face 2",
+                                         "property list uchar int vertex_indices",
+                                         "end_header",
+                                         NULL};
+    static const char *const data[] = {"",      "0 0 0",   "", " \t", "1 0 0",   "", "1 1 0",
+                                       "0 1 0", "3 0 1 2", "", "",    "3 0 2 3", "", NULL};
+    for (int i = 0; i < 2; ++i) {
+        char text[1024];
+        size_t used = 0;
+        for (int k = 0; header[k]; ++k)
+            used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", header[k], ends[i]);
+        for (int k = 0; data[k]; ++k)
+            used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", data[k], ends[i]);
+        assert_int_equal(fixture_load(put_text("a.ply", text)), WHIT_OK);
+        const struct scene_mesh *mesh = &fixture.scene->meshes[0];
+        assert_int_equal(mesh->triangle_count, 2);
+        assert_float_equal(mesh->positions[3 * mesh->indices[5] + 1], 1, 0);
+    }
+}
+
 /* A binary PLY whose first data byte is that of a line end. */
 TEST_IN(binary_data_that_looks_like_a_line_end, fixture_begin, fixture_end)
 {

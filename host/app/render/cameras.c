@@ -23,7 +23,9 @@ static const char *other_option(const struct settings *settings,
         return request->part.tiles ? "--tile" : "--samples-part";
     if (request->resume)
         return "--resume";
-    return settings->shader[0] ? "--shader" : part_not_of(settings, request);
+    if (settings->shader[0])
+        return "--shader";
+    return settings->stages[0] ? "--stages" : part_not_of(settings, request);
 }
 
 bool cameras_check(struct cli_reader *reader, const struct job *job, struct render_request *request)
