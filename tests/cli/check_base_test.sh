@@ -86,7 +86,14 @@ chmod +x .git/hooks/pre-commit
 check "a hook: the commit is made" sh -c 'git add more.txt && git commit -qam hooked'
 check "a hook: the cause is found" grep -q '^slider: differs: .*cause: --set from gain=2 to gain=3' "$OUT/hook"
 check "a hook: the commit has what was added and changed" test "$(git diff --name-only HEAD~1 | grep -c 'more.txt\|a.json')" -eq 2
-rm .git/hooks/pre-commit && git reset -q HEAD~1
+git reset -q HEAD~1
+# In a second worktree these variables name other places.
+git worktree add -q --detach linked HEAD && cp -R suite more.txt linked && rm "$OUT/hook"
+check "a hook of a second worktree: the commit is made" sh -c 'cd linked && git add -A && git commit -qm linked'
+check "a hook of a second worktree: the cause is found" grep -q '^slider: differs: .*cause: --set from gain=2 to gain=3' "$OUT/hook"
+check "a hook of a second worktree: the commit has what was added and changed" \
+    test "$(git -C linked diff --name-only HEAD~1 | grep -c 'more.txt\|a.json')" -eq 2
+git worktree remove --force linked && rm .git/hooks/pre-commit
 
 # The tree of the revision is removed even if whit is interrupted, or ended by a signal that no program can catch.
 is_there() { test -e "$(echo "$TMPDIR"/whit-base-*)/tree/suite/looks.whit"; }
