@@ -21,20 +21,24 @@ static const double WIDENING = 0x1p-20;
 
 /* The world-space box of an instance, widened. A point p reaches object space as inverse * (p -
    origin): errors relative to |p - origin| on one world axis come back on the others multiplied by
-   |forward| * |inverse|. */
+   |forward| * |inverse|. What they have from the box and the instance's origin is in this margin;
+   what they have from the ray's origin is in the ray's (gpu_instance.slack). *spread_max: raised to
+   the largest sum of a row of |forward| * |inverse|. */
 static struct bvh_box world_box(const struct affine *forward, const struct affine *inverse,
-                                const struct bvh_box *box)
+                                const struct bvh_box *box, double *spread_max)
 {
     struct accel_extent extent = accel_transformed_box(forward->m, box);
     struct bvh_box out;
     for (int r = 0; r < 3; ++r) {
-        double margin = 0.0;
+        double margin = 0.0, spread_sum = 0.0;
         for (int c = 0; c < 3; ++c) {
             double spread = 0.0;
             for (int k = 0; k < 3; ++k)
                 spread += fabs(forward->m[4 * r + k]) * fabs(inverse->m[4 * k + c]);
             margin += spread * extent.size[c];
+            spread_sum += spread;
         }
+        *spread_max = fmax(*spread_max, spread_sum);
         out.lo[r] = float_below(extent.lo[r] - margin * WIDENING);
         out.hi[r] = float_above(extent.hi[r] + margin * WIDENING);
     }
@@ -100,6 +104,7 @@ struct accel_posing {
     uint32_t *ranks;                /* [instance]: its rank; UINT32_MAX: it is empty */
     uint32_t *indices;              /* [rank]: its instance */
     uint32_t *bad;  /* [chunk]: its first instance without an inverse, or UINT32_MAX */
+    double *spread; /* [chunk]: spread_max of world_box */
     uint32_t count; /* of ranks */
     bool has_tree;
 };
@@ -113,6 +118,7 @@ void accel_posing_destroy(struct accel_posing *posing)
     free(posing->ranks);
     free(posing->indices);
     free(posing->bad);
+    free(posing->spread);
     free(posing);
 }
 
@@ -131,7 +137,9 @@ static struct accel_posing *posing_create(uint32_t count)
     posing->ranks = array_alloc_zeroed(count, sizeof *posing->ranks);
     posing->indices = array_alloc(count, sizeof *posing->indices);
     posing->bad = array_alloc(chunk_count(count), sizeof *posing->bad);
-    if (posing->instances && posing->boxes && posing->ranks && posing->indices && posing->bad)
+    posing->spread = array_alloc(chunk_count(count), sizeof *posing->spread);
+    if (posing->instances && posing->boxes && posing->ranks && posing->indices && posing->bad &&
+        posing->spread)
         return posing;
     accel_posing_destroy(posing);
     return NULL;
@@ -170,6 +178,7 @@ static void fill_chunk(void *user, uint32_t chunk)
     uint32_t begin = chunk * CHUNK_INSTANCES, left = accel->instance_count - begin;
     uint32_t end = begin + (left < CHUNK_INSTANCES ? left : CHUNK_INSTANCES);
     posing->bad[chunk] = UINT32_MAX;
+    posing->spread[chunk] = 0.0;
     for (uint32_t i = begin; i < end; ++i) {
         const struct affine *forward = &filling->pose->instances[i];
         uint32_t mesh_index = accel->scene->instances[i].mesh;
@@ -181,7 +190,8 @@ static void fill_chunk(void *user, uint32_t chunk)
             return;
         }
         if (posing->ranks[i] != UINT32_MAX)
-            posing->boxes[posing->ranks[i]] = world_box(forward, &inverse, &mesh->box);
+            posing->boxes[posing->ranks[i]] =
+                world_box(forward, &inverse, &mesh->box, &posing->spread[chunk]);
     }
 }
 
@@ -191,9 +201,11 @@ static whit_result instances_fill(const struct accel *accel, const struct scene_
     struct filling filling = {accel, pose, posing,
                               accel->flat ? accel_flat_meshes(accel->world) : accel->meshes};
     uint32_t chunks = chunk_count(accel->instance_count);
+    double spread_max = 0.0;
     threads_for(accel->params.threads, chunks, fill_chunk, &filling);
     for (uint32_t c = 0; c < chunks; ++c) {
         uint32_t i = posing->bad[c];
+        spread_max = fmax(spread_max, posing->spread[c]);
         if (i == UINT32_MAX)
             continue;
         const char *name = accel->scene->instances[i].name;
@@ -201,6 +213,8 @@ static whit_result instances_fill(const struct accel *accel, const struct scene_
                   accel->scene->name, i, text_token(name).text, pose->time_s);
         return WHIT_ERROR_INPUT;
     }
+    if (chunks > 0)
+        posing->instances[0].slack = float_above(spread_max * WIDENING);
     return WHIT_OK;
 }
 

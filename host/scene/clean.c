@@ -30,14 +30,43 @@ static void edge(const float *from, const float *to, double out[3])
         out[i] = (double)to[i] - (double)from[i];
 }
 
-/* Products of two differences of floats below 1e18 neither overflow nor vanish in double. */
+/* Whether a sum of doubles is 0, computed without rounding: `parts` do not overlap (Shewchuk 1997,
+   Grow-Expansion). */
+static bool sum_is_zero(const double *terms, int count)
+{
+    double parts[6];
+    bool zero = true;
+    for (int i = 0; i < count; ++i) {
+        double sum = terms[i];
+        for (int k = 0; k < i; ++k) {
+            double both = sum + parts[k], rest = both - sum;
+            parts[k] = (sum - (both - rest)) + (parts[k] - rest);
+            sum = both;
+        }
+        parts[i] = sum;
+    }
+    for (int i = 0; i < count; ++i)
+        zero = zero && parts[i] == 0.0;
+    return zero;
+}
+
+/* Whether the triangle has an area in the plane of axes u and v. Products of two floats are exact
+   in double. */
+static bool has_area_along(const float *a, const float *b, const float *c, int u, int v)
+{
+    double ax = (double)a[u], ay = (double)a[v], bx = (double)b[u], by = (double)b[v];
+    double cx = (double)c[u], cy = (double)c[v];
+    double left = (bx - ax) * (cy - ay), right = (by - ay) * (cx - ax);
+    if (fabs(left - right) > 0x1p-50 * (fabs(left) + fabs(right)))
+        return true;
+    const double terms[6] = {ax * by, -ay * bx, bx * cy, -by * cx, cx * ay, -cy * ax};
+    return !sum_is_zero(terms, 6);
+}
+
 static bool has_area(const float *a, const float *b, const float *c)
 {
-    double e1[3], e2[3];
-    edge(a, b, e1);
-    edge(a, c, e2);
-    return e1[1] * e2[2] != e1[2] * e2[1] || e1[2] * e2[0] != e1[0] * e2[2] ||
-           e1[0] * e2[1] != e1[1] * e2[0];
+    return has_area_along(a, b, c, 1, 2) || has_area_along(a, b, c, 2, 0) ||
+           has_area_along(a, b, c, 0, 1);
 }
 
 static bool keep_triangle(const struct scene_mesh *mesh, uint32_t triangle, struct cleaned *count)

@@ -73,12 +73,21 @@ static inline void bound_ray_setup(struct ray_setup *ray)
 
 #define CLIP_MARGIN (1.0f / 524288.0f)
 
+static inline void widen_boxes(struct ray_setup *ray, float margin)
+{
+    ray->above = vec3_add(ray->origin, vec3_make(margin, margin, margin));
+    ray->below = vec3_sub(ray->origin, vec3_make(margin, margin, margin));
+}
+
 static inline void widen_ray_setup(struct ray_setup *ray, struct vec3 center, float reach)
 {
     float farthest = vec3_largest_magnitude(vec3_sub(ray->origin, center));
-    float margin = (farthest + reach) * CLIP_MARGIN;
-    ray->above = vec3_add(ray->origin, vec3_make(margin, margin, margin));
-    ray->below = vec3_sub(ray->origin, vec3_make(margin, margin, margin));
+    widen_boxes(ray, (farthest + reach) * CLIP_MARGIN);
+}
+
+static inline void widen_world_setup(struct ray_setup *ray, float slack)
+{
+    widen_boxes(ray, vec3_largest_magnitude(ray->origin) * slack);
 }
 
 static inline void slab_axis(float lo, float hi, float inv_dir, bool negative, float *start,

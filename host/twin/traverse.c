@@ -3,6 +3,7 @@
 #include "accel/accel.h"
 
 #include <float.h>
+#include <string.h>
 
 #include "accel/extent.h"
 #include "accel/hit_order.h"
@@ -17,9 +18,8 @@
 
 #define REF_DONE          0xffffffffu
 #define REF_ONE_PRIMITIVE (1u << BVH_COUNT_SHIFT)
-/* The shader's constant; here too its product is rounded to float. */
-#define SLAB_NEAR_SCALE   (1.0f - 1.0f / 524288.0f)
-enum { STACK_SIZE = 512 };
+#define NEAR_SHARE        (1.0f / 524288.0f)
+enum { STACK_SIZE = 512, NEAR_STEPS = 32 };
 
 struct walk {
     const struct accel *accel;
@@ -69,7 +69,22 @@ static uint32_t pop_ref(struct walk *walk, uint32_t base, uint32_t *top)
     return walk->stack[*top];
 }
 
-static uint32_t step_siblings(struct walk *walk, const struct ray_setup *ray, float near_scale,
+static bool enters(const struct walk *walk, float near, float far, float share)
+{
+    if (walk->numerics == NUMERICS_EXACT) {
+        uint32_t bits;
+        memcpy(&bits, &near, sizeof bits);
+        bits = bits > NEAR_STEPS ? bits - NEAR_STEPS : 0;
+        memcpy(&near, &bits, sizeof near);
+    }
+    if (walk->numerics == NUMERICS_WATERTIGHT && share != 0.0f) {
+        float less = fabsf(near) * share; /* rounded to float, as in the shader */
+        near = near - less;
+    }
+    return near <= far && near <= walk->hi;
+}
+
+static uint32_t step_siblings(struct walk *walk, const struct ray_setup *ray, float near_share,
                               uint32_t pair, uint32_t base, uint32_t *top)
 {
     const struct gpu_bvh_node *a = &walk->accel->nodes[pair], *b = a + 1;
@@ -78,20 +93,12 @@ static uint32_t step_siblings(struct walk *walk, const struct ray_setup *ray, fl
                   vec3_sub(vec3_load(a->hi), ray->below), walk->t_min, &a_near, &a_far);
     slab_interval(ray, vec3_sub(vec3_load(b->lo), ray->above),
                   vec3_sub(vec3_load(b->hi), ray->below), walk->t_min, &b_near, &b_far);
-    if (walk->numerics == NUMERICS_EXACT)
-        near_scale = SLAB_NEAR_SCALE;
-    if (walk->numerics == NUMERICS_FAST)
-        near_scale = 1.0f;
-    if (near_scale != 1.0f) {
-        a_near = a_near * near_scale;
-        b_near = b_near * near_scale;
-    }
     ++walk->level;
     ++walk->cost.inner_nodes;
     if (walk->level > walk->cost.depth)
         walk->cost.depth = walk->level;
-    bool hit_a = a_near <= a_far && a_near <= walk->hi;
-    bool hit_b = b_near <= b_far && b_near <= walk->hi;
+    bool hit_a = enters(walk, a_near, a_far, near_share);
+    bool hit_b = enters(walk, b_near, b_far, near_share);
     uint32_t ref_a = accel_node_ref(a), ref_b = accel_node_ref(b);
     bool b_nearer = b_near < a_near;
     if (walk->order == ORDER_SIGN)
@@ -321,7 +328,7 @@ static void traverse_mesh(struct walk *walk, const struct ray_setup *ray, uint32
     uint32_t top = base, ref = root;
     while (ref != REF_DONE) {
         while (is_inner(ref))
-            ref = step_siblings(walk, ray, 1.0f, ref, base, &top);
+            ref = step_siblings(walk, ray, 0.0f, ref, base, &top);
         while (is_leaf(ref)) {
             bool done = test_record(walk, ray, ref & BVH_FIRST_MASK, instance);
             ref += 1u - REF_ONE_PRIMITIVE;
@@ -377,10 +384,11 @@ static struct ray_setup ray_at(const struct walk *walk, uint32_t instance)
 static void traverse_instances(struct walk *walk, uint32_t root)
 {
     struct ray_setup world = world_ray(walk);
+    widen_world_setup(&world, walk->accel->instances[0].slack);
     uint32_t top = 0, ref = root;
     while (ref != REF_DONE) {
         while (is_inner(ref))
-            ref = step_siblings(walk, &world, SLAB_NEAR_SCALE, ref, 0, &top);
+            ref = step_siblings(walk, &world, NEAR_SHARE, ref, 0, &top);
         if (is_leaf(ref)) {
             uint32_t index = ref & BVH_FIRST_MASK;
             const struct gpu_instance *instance = &walk->accel->instances[index];
@@ -485,7 +493,7 @@ static void begin_walk(struct walk *walk, const struct accel *accel,
     walk->next = false;
     walk->hit_before = -INFINITY;
     walk->t_min = ray->t_min;
-    if (params->numerics == NUMERICS_EXACT && ray->t_min < 0.0f)
+    if (params->numerics == NUMERICS_EXACT && ray->t_min <= 0.0f)
         walk->t_min = 0.0f;
     walk->skip_instance = params->skip_instance;
     walk->skip_primitive = params->skip_primitive;

@@ -33,7 +33,7 @@ const float BOX_INVERSE_MAX = 16777216.0; // 2^24
 #define INFINITE uintBitsToFloat(0x7f800000u)
 // Relative margin of boxes: far more than the roundings of a ray, its bounds and the test of a box,
 // each a few 2^-24 of the distances from the ray's ends; and more than the slack of that test
-// (SLAB_FAR_SCALE, SLAB_NEAR_SCALE).
+// (SLAB_FAR_SCALE, NEAR_SHARE).
 const float BOUNDS_MARGIN = 1.0 / 131072.0;
 
 int min_of_lanes(int value)

@@ -154,11 +154,25 @@ uint refill_stack(uint ref, inout NodeStack stack, inout uint status)
     return ref;
 }
 
-// Scales the near t of boxes in the tree over instances, whose rays are transformed below: room for
-// the float error of the transform, relative to t. Mesh trees use 1.0: their boxes and triangles
-// are tested with the same ray, unless the t that boxes are compared with is exact and they are
-// not.
-const float SLAB_NEAR_SCALE = 1.0 - 1.0 / 524288.0;
+// The near t of a box is made smaller by this share in the tree over instances, whose rays are
+// transformed below: room for the float error of the transform, relative to t. Mesh trees use 0:
+// their boxes and triangles are tested with the same ray. NUMERICS_EXACT compares boxes with exact t,
+// and makes the near t smaller by NEAR_STEPS floats in all trees. That is as much or more, also
+// among denormals, whose errors are not relative, and for a t that was rounded to infinity.
+const float NEAR_SHARE = 1.0 / 524288.0;
+const int NEAR_STEPS = 32;
+
+// Whether the ray is in a box from `near` to `far` before it hits what it has hit so far.
+bool enters(float near, float far, float share, Hit hit)
+{
+    if (SPEC_NUMERICS == NUMERICS_EXACT) // where it is at least 0
+        near = intBitsToFloat(max(floatBitsToInt(near) - NEAR_STEPS, 0));
+    if (SPEC_NUMERICS == NUMERICS_WATERTIGHT && share != 0.0) {
+        precise float lower = near - abs(near) * share;
+        near = lower;
+    }
+    return near <= far && near <= farthest(hit);
+}
 
 // Whether the ray reaches the second node of a pair first, by the axis `bits` in the first node's
 // count.
@@ -171,7 +185,7 @@ bool second_first(RaySetup ray, uint bits)
 
 // One step down: tests both nodes of `pair`, returns the one to visit first, and pushes the other.
 // With SPEC_CLIPPED boxes of mesh trees are widened by the ray's margin.
-uint step_siblings(RaySetup ray, float t_min, float near_scale, uint pair, inout NodeStack stack,
+uint step_siblings(RaySetup ray, float t_min, float near_share, uint pair, inout NodeStack stack,
                inout Hit hit)
 {
     uvec4 a0 = fetch_node_row(pair * 2u);
@@ -185,15 +199,8 @@ uint step_siblings(RaySetup ray, float t_min, float near_scale, uint pair, inout
     float a_near, a_far, b_near, b_far;
     slab_interval(ray, a_lo, a_hi, t_min, a_near, a_far);
     slab_interval(ray, b_lo, b_hi, t_min, b_near, b_far);
-    if (SPEC_NUMERICS == NUMERICS_EXACT ||
-        (SPEC_NUMERICS == NUMERICS_WATERTIGHT && near_scale != 1.0)) {
-        precise float a_scaled = a_near * SLAB_NEAR_SCALE;
-        precise float b_scaled = b_near * SLAB_NEAR_SCALE;
-        a_near = a_scaled;
-        b_near = b_scaled;
-    }
-    bool hit_a = a_near <= a_far && a_near <= farthest(hit);
-    bool hit_b = b_near <= b_far && b_near <= farthest(hit);
+    bool hit_a = enters(a_near, a_far, near_share, hit);
+    bool hit_b = enters(b_near, b_far, near_share, hit);
     uint ref_a = (a1.w << BVH_COUNT_SHIFT) | a0.w;
     uint ref_b = (b1.w << BVH_COUNT_SHIFT) | b0.w;
     bool b_wanted = false;
@@ -476,7 +483,7 @@ void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint s
     do {
         do {
             if (is_inner(ref) && has_room(stack))
-                ref = step_siblings(ray, t_min, 1.0, ref, stack, hit);
+                ref = step_siblings(ray, t_min, 0.0, ref, stack, hit);
         } while (is_inner(ref) && has_room(stack));
         do {
             if (is_leaf(ref)) {
@@ -548,7 +555,7 @@ void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
     do {
         do {
             if (is_inner(ref) && has_room(stack) && !inside)
-                ref = step_siblings(ray, t_min, SLAB_NEAR_SCALE, ref, stack, hit);
+                ref = step_siblings(ray, t_min, NEAR_SHARE, ref, stack, hit);
         } while (is_inner(ref) && has_room(stack) && !inside);
         if (is_leaf(ref)) {
             uint instance = ref & BVH_FIRST_MASK;
@@ -577,6 +584,7 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
                         uint skip_instance, uint skip_primitive, inout Hit hit)
 {
     RaySetup ray = make_ray_setup(origin, dir), local = ray;
+    widen_world_setup(ray, fetch_slack());
     NodeStack stack = make_stack(0u, 0u), mesh_stack = stack;
     uint ref = root, mesh_ref = REF_DONE;
     bool inside = false;
@@ -614,8 +622,8 @@ Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, u
         traversal_cost = gpu_cost(1u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
     if (!is_usable(origin, dir))
         root = REF_DONE;
-    if (SPEC_NUMERICS == NUMERICS_EXACT && t_min < 0.0) // nothing is hit behind the origin
-        t_min = 0.0;
+    if (SPEC_NUMERICS == NUMERICS_EXACT && t_min <= 0.0) // nothing is hit behind the origin, nor is
+        t_min = 0.0;                                     // t -0
     if (SPEC_INSTANCED != 0u) {
         traverse_instances(mode, origin, dir, t_min, root, skip_instance, skip_primitive, hit);
     } else {

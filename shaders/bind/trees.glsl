@@ -83,6 +83,12 @@ float fetch_mesh_reach(uint instance)
     return uintBitsToFloat(fetch_instance_row(instance * INSTANCE_ROWS + 7u).x);
 }
 
+// gpu_instance.slack
+float fetch_slack()
+{
+    return uintBitsToFloat(fetch_instance_row(7u).z);
+}
+
 // Rows times vector, written out, since lavapipe's mat3 * vec3 adds the products in another order,
 // from the right.
 vec3 rotate_rows(vec3 r0, vec3 r1, vec3 r2, vec3 p)

@@ -61,16 +61,33 @@ RaySetup make_ray_setup(vec3 origin, vec3 dir)
 // its `reach`.
 const float CLIP_MARGIN = 1.0 / 524288.0;
 
+void widen_boxes(inout RaySetup ray, float margin)
+{
+    precise vec3 above = ray.origin + margin;
+    precise vec3 below = ray.origin - margin;
+    ray.above = above;
+    ray.below = below;
+}
+
 void widen_ray_setup(inout RaySetup ray, vec3 center, float reach)
 {
     precise vec3 away = abs(ray.origin - center);
     float farthest = away.x > away.y ? away.x : away.y;
     farthest = away.z > farthest ? away.z : farthest;
     precise float margin = (farthest + reach) * CLIP_MARGIN;
-    precise vec3 above = ray.origin + margin;
-    precise vec3 below = ray.origin - margin;
-    ray.above = above;
-    ray.below = below;
+    widen_boxes(ray, margin);
+}
+
+// The margin of boxes in the tree over instances, whose rays are transformed below: the transform
+// of the origin and of the direction is rounded relative to the distance from the instance. See
+// gpu_instance.slack.
+void widen_world_setup(inout RaySetup ray, float slack)
+{
+    vec3 size = abs(ray.origin);
+    float farthest = size.x > size.y ? size.x : size.y;
+    farthest = size.z > farthest ? size.z : farthest;
+    precise float margin = farthest * slack;
+    widen_boxes(ray, margin);
 }
 
 // Widens the far end of a slab interval, by more than the error of (b - o) * (1 / d) on both ends

@@ -140,6 +140,58 @@ TEST(scales_keep_their_precision)
     assert_precision("mirrored twice", turned(1, 2, 3, -2, -1, 3), 3);
 }
 
+/* A ray from `away` that passes a corner of the unit box, turned by the matrix, along an axis or
+   nearly so. Corners of the box around it are such corners. */
+static struct gpu_ray grazing_ray(const struct affine *matrix, double away, uint64_t *state)
+{
+    struct gpu_ray ray = {.t_max = INFINITY};
+    double corner[3], nudge = 1.0 + 0x1p-22 * random_signed(state);
+    uint32_t axis = random_below(state, 3), tilted = random_below(state, 2);
+    for (int i = 0; i < 3; ++i)
+        corner[i] = random_below(state, 2) ? nudge : -nudge;
+    affine_point(matrix, corner, corner);
+    for (uint32_t i = 0; i < 3; ++i) {
+        double along = i == axis ? 1.0 : tilted ? 1e-4 * random_signed(state) : 0.0;
+        ray.origin[i] = (float)(corner[i] - away * along);
+        ray.dir[i] = tilted ? (float)(corner[i] - (double)ray.origin[i]) : (float)along;
+    }
+    return ray;
+}
+
+static bool same_hit(const struct gpu_hit *a, const struct gpu_hit *b)
+{
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
+/* The tree over instances must enter what the rays of its meshes hit. From far away the rounded
+   transform of a ray moves it by more than the box of an instance is wide of it. */
+TEST(rays_from_far_away_enter_what_they_hit)
+{
+    const struct affine shear = {.m = {1, 0.7, -2, 3, 0, 1, 0.4, -1, 0.3, 0, 1, 0}};
+    const struct affine matrices[] = {
+        turned(0, 0, 0, 1, 1, 1), turned(5, -2, 3, 2, 0.5, 1),
+        affine_multiply(&shear, &(struct affine){.m = {3, 0, 0, 9, 0, 1, 0, 0, 0, 0, 1, 0}})};
+    struct scene *scene = scene_begin(&silent, "boxes");
+    uint32_t box = scene_put_mesh(scene, mesh_box(2, 2, 2)), met = 0, other = 0;
+    for (int i = 0; i < 3; ++i)
+        scene_put_again(scene, box, &(struct put){.matrix = &matrices[i]});
+    own_world world = world_of(scene, (whit_accel_params){0});
+    uint64_t random = 7;
+    for (int i = 0; i < RAYS; ++i) {
+        double away = pow(10.0, 1.0 + 7.0 * random_unit(&random));
+        struct gpu_ray ray = grazing_ray(&matrices[i % 3], away, &random);
+        struct traverse_params params = {.numerics = levels[i / 3 % 2]};
+        struct gpu_hit tree = trace_with(world.accel, params, &ray, NULL);
+        params.brute = true;
+        struct gpu_hit brute = trace_with(world.accel, params, &ray, NULL);
+        met += brute.primitive != HIT_NONE;
+        other += !same_hit(&tree, &brute);
+    }
+    print_message("  %u of %d rays hit, %u of them otherwise by the tree\n", met, RAYS, other);
+    assert_true(met > RAYS / 4);
+    assert_int_equal(other, 0);
+}
+
 /* A normal transformed by the matrix itself would be off by up to 36.87 degrees for diag(2, 1,
    1). */
 TEST(normals_go_by_the_inverse_transpose)

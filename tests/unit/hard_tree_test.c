@@ -131,6 +131,37 @@ TEST(trees_and_orders_do_not_matter)
         try_trees(world_of_soup(soups[s], trees[0]));
 }
 
+/* Directions so long or so short that t is denormal, or next to the largest float. There boxes and
+   keys are rounded by more than their share of t. */
+TEST(keys_at_the_ends_of_floats_do_not_depend_on_the_tree)
+{
+    random_state = 11;
+    own_world world = world_of_soup(soup_terrain(6), (whit_accel_params){.leaf_limit = 1});
+    uint32_t met = 0, other = 0;
+    for (uint32_t i = 0; i < 20000; ++i) {
+        struct vec3 target = point_of_record(world.accel, i % 2), from = random_point(1.0f);
+        struct gpu_ray ray = {.t_max = INFINITY};
+        struct gpu_hit tree, brute;
+        uint32_t status = 0;
+        double t = i % 4 < 2 ? ldexp(1.0 + (double)random_below(&random_state, 4), -149)
+                             : (double)FLT_MAX * (1.0 - 0x1p-24 * random_below(&random_state, 8));
+        float scale = i % 4 < 2 ? 0x1p-24f : 0x1p20f; /* so that directions stay floats */
+        vec3_store(ray.origin, vec3_add(target, vec3_scale(from, scale)));
+        for (int k = 0; k < 3; ++k)
+            ray.dir[k] = (float)(((double)(&target.x)[k] - (double)ray.origin[k]) / t);
+        struct traverse_params params = {
+            .numerics = NUMERICS_EXACT, .skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
+        traverse_ray(world.accel, &params, &ray, &tree, NULL, &status);
+        params.brute = true;
+        traverse_ray(world.accel, &params, &ray, &brute, NULL, &status);
+        met += brute.primitive != HIT_NONE;
+        other += !hits_equal(&tree, &brute);
+    }
+    print_message("  %u of 20000 rays hit, %u of them otherwise by the tree\n", met, other);
+    assert_true(met > 5000);
+    assert_int_equal(other, 0);
+}
+
 /* The same of spheres: as they are, in instances, and with rings beside them. */
 TEST(trees_and_orders_of_spheres_do_not_matter)
 {

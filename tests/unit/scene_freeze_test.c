@@ -64,6 +64,20 @@ TEST(bad_triangles_are_dropped_and_counted)
     assert_true(m->positions[9] == 0.0f); /* the NaN is gone */
 }
 
+/* Rounded to double, the products of the first triangle cancel, and those of the second do not. */
+TEST(area_is_decided_without_rounding)
+{
+    const float p[] = {0x1p-60f, 0,    0,    1,         1,    0,    2,    2,    0,
+                       0x1p-60f, 0,    0,    0x1.8p20f, 0,    0,    0.1f, 0,    0,
+                       0.1f,     0.1f, 0.3f, 0.2f,      0.2f, 0.6f, 0.4f, 0.4f, 1.2f};
+    const uint32_t indices[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    struct scene_mesh mesh = make_mesh(p, 9, indices, 3);
+    mesh.materials = calloc(3, sizeof(uint32_t));
+    own_scene *scene = scene_ready(scene_of(mesh));
+    assert_int_equal(scene->triangle_total, 1);
+    assert_int_equal(scene->meshes[0].indices[1], 1);
+}
+
 TEST(bad_spheres_are_dropped_and_counted)
 {
     const float spheres[] = {1, 2,          3, 0.5f,  0, 0, 0, 0,          0, 0, 0, -1,
