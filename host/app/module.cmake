@@ -81,3 +81,18 @@ if(WHIT_VIEWER)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/whit
   FILES_MATCHING PATTERN "*.json" PATTERN "*.png")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders/examples
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/whit/shaders)
+# Documents and scenes refer to each other, and to the examples of shaders, by paths of a checkout.
+foreach(link docs scenes shaders)
+  set(from ${CMAKE_INSTALL_FULL_DOCDIR})
+  set(to ${CMAKE_INSTALL_FULL_DATADIR}/whit/${link})
+  if(link STREQUAL docs)
+    set(from ${CMAKE_INSTALL_FULL_DATADIR}/whit)
+    set(to ${CMAKE_INSTALL_FULL_DOCDIR}/docs)
+  endif()
+  file(RELATIVE_PATH target ${from} ${to})
+  file(RELATIVE_PATH from_prefix ${CMAKE_INSTALL_PREFIX} ${from})
+  install(CODE "file(CREATE_LINK ${target}
+    \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${from_prefix}/${link}\" SYMBOLIC)")
+endforeach()

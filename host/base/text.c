@@ -108,6 +108,11 @@ struct text_token text_token(const char *text)
     return token;
 }
 
+size_t text_mark_bytes(const char *text)
+{
+    return strncmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+}
+
 void text_add(char *text, size_t bytes, const char *format, ...)
 {
     size_t used = strlen(text);

@@ -16,6 +16,10 @@ struct text_token {
    which the log does. NULL is as "". Use it in the same expression: "%s", text_token(name).text */
 struct text_token text_token(const char *text);
 
+/* Bytes of the byte order mark of UTF-8 that `text` begins with, as some editors write it: 3 or 0.
+ */
+size_t text_mark_bytes(const char *text);
+
 /* Appends to `text`, which lies in a buffer of `bytes`. What does not fit is cut. */
 void text_add(char *text, size_t bytes, const char *format, ...) WHIT_PRINTF(3, 4);
 

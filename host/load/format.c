@@ -1,4 +1,5 @@
 #include "load/format.h"
+#include "base/text.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -97,7 +98,7 @@ const char *format_find(const uint8_t *data, size_t size_bytes)
         return "fbx";
     if (is_binary_stl(data, size_bytes))
         return "stl";
-    text += begins(text, "\xef\xbb\xbf") ? 3 : 0;
+    text += text_mark_bytes(text);
     while (is_blank(*text))
         text++;
     if (*text == '{')

@@ -396,8 +396,7 @@ bool mtl_parse(struct scene *scene, const char *path, const char *text, struct m
 {
     struct reader reader = {.scene = scene, .path = path, .line = 1, .library = library};
     bool in_entry = false;
-    bool has_mark = strncmp(text, "\xef\xbb\xbf", 3) == 0;
-    char *copy = string_copy(text + (has_mark ? 3 : 0));
+    char *copy = string_copy(text + text_mark_bytes(text));
     bool ok = copy;
     char *line = copy;
     while (ok && line) {

@@ -134,9 +134,7 @@ bool obj_repair_text(uint8_t **data, size_t *size_bytes)
                 ((text[0] == 0xfe && text[1] == 0xff) || (text[0] == 0xff && text[1] == 0xfe));
     if (wide && !from_utf16(data, size_bytes))
         return false;
-    const uint8_t *at = *data, *end = at + *size_bytes;
-    if (*size_bytes >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0)
-        at += 3;
+    const uint8_t *at = *data + text_mark_bytes((const char *)*data), *end = *data + *size_bytes;
     /* Half as much more at most: `vt .5` and its line end become `vt 0.5 0`. The last line may lack
        its line end. */
     uint8_t *out = array_alloc(*size_bytes + *size_bytes / 2 + 4, 1), *to = out;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/text.h"
 #include "base/vec.h"
 #include "load/scene_animation.h"
 #include "load/scene_cameras.h"
@@ -133,7 +134,8 @@ whit_result load_cameras(struct scene *scene, const char *path)
     if (result != WHIT_OK)
         return result;
     reader.text = (const char *)text;
-    bool is_array = reader.text[strspn(reader.text, " \t\r\n")] == '[';
+    const char *first = reader.text + text_mark_bytes(reader.text);
+    bool is_array = first[strspn(first, " \t\r\n")] == '[';
     bool read =
         is_array ? read_array(&reader) : read_lines(&reader, (char *)text, reader.text_bytes);
     if (read && scene->camera_count == 0) {

@@ -66,45 +66,53 @@ static bool add_picture(struct reader *reader, char *name, uint32_t width, uint3
     return *index != SCENE_NONE || reader_no_memory(reader);
 }
 
-static void store_color(uint8_t *texel, const float color[3])
+/* The two colours of a pattern. */
+struct pattern {
+    float colors[2][3];
+    bool encodes; /* `colors` are linear, and texels are sRGB; false: texels are `colors` as they
+                     are, as maps of numbers have them */
+};
+
+static void store_color(const struct pattern *pattern, const float color[3], uint8_t *texel)
 {
     for (int i = 0; i < 3; ++i)
-        texel[i] = (uint8_t)lrintf(255.0f * image_srgb_from_linear(color[i]));
+        texel[i] = (uint8_t)lrintf(
+            255.0f * (pattern->encodes ? image_srgb_from_linear(color[i]) : color[i]));
     texel[3] = 255;
 }
 
-static char *picture_name(const char *kind, float colors[2][3])
+static char *picture_name(const char *kind, const struct pattern *pattern)
 {
     uint8_t a[4], b[4];
-    store_color(a, colors[0]);
-    store_color(b, colors[1]);
-    return string_format("%s #%02x%02x%02x #%02x%02x%02x", kind, a[0], a[1], a[2], b[0], b[1],
-                         b[2]);
+    store_color(pattern, pattern->colors[0], a);
+    store_color(pattern, pattern->colors[1], b);
+    return string_format("%s%s #%02x%02x%02x #%02x%02x%02x", kind,
+                         pattern->encodes ? "" : " of numbers", a[0], a[1], a[2], b[0], b[1], b[2]);
 }
 
-static bool add_checker(struct reader *reader, float colors[2][3], uint32_t *index)
+static bool add_checker(struct reader *reader, const struct pattern *pattern, uint32_t *index)
 {
     uint8_t *rgba = array_alloc(4, 4);
     for (int i = 0; rgba && i < 4; ++i)
-        store_color(rgba + 4 * i, colors[i == 1 || i == 2]);
-    return add_picture(reader, picture_name("checker", colors), 2, 2, rgba, index);
+        store_color(pattern, pattern->colors[i == 1 || i == 2], rgba + 4 * i);
+    return add_picture(reader, picture_name("checker", pattern), 2, 2, rgba, index);
 }
 
-static bool add_gradient(struct reader *reader, float colors[2][3], uint32_t *index)
+static bool add_gradient(struct reader *reader, const struct pattern *pattern, uint32_t *index)
 {
     enum { ROWS = 256 };
     uint8_t *rgba = array_alloc(ROWS, 4);
     for (int row = 0; rgba && row < ROWS; ++row) {
         float s = (float)row / (ROWS - 1), color[3];
         for (int i = 0; i < 3; ++i)
-            color[i] = (1.0f - s) * colors[0][i] + s * colors[1][i];
-        store_color(rgba + 4 * (size_t)row, color);
+            color[i] = (1.0f - s) * pattern->colors[0][i] + s * pattern->colors[1][i];
+        store_color(pattern, color, rgba + 4 * (size_t)row);
     }
-    return add_picture(reader, picture_name("gradient", colors), 1, ROWS, rgba, index);
+    return add_picture(reader, picture_name("gradient", pattern), 1, ROWS, rgba, index);
 }
 
 /* One tile of a running bond: two courses, one brick wide, the second shifted by half a brick. */
-static bool add_brick(struct reader *reader, float colors[2][3], uint32_t *index)
+static bool add_brick(struct reader *reader, const struct pattern *pattern, uint32_t *index)
 {
     enum { SIDE = 128, COURSE = SIDE / 2, JOINT = 6 };
     uint8_t *rgba = array_alloc((size_t)SIDE * SIDE, 4);
@@ -112,17 +120,36 @@ static bool add_brick(struct reader *reader, float colors[2][3], uint32_t *index
         for (int x = 0; x < SIDE; ++x) {
             int along = (x + (y / COURSE ? SIDE / 2 : 0)) % SIDE;
             bool mortar = y % COURSE < JOINT || along < JOINT;
-            store_color(rgba + 4 * ((size_t)y * SIDE + (size_t)x), colors[mortar]);
+            store_color(pattern, pattern->colors[mortar],
+                        rgba + 4 * ((size_t)y * SIDE + (size_t)x));
         }
     }
-    return add_picture(reader, picture_name("brick", colors), SIDE, SIDE, rgba, index);
+    return add_picture(reader, picture_name("brick", pattern), SIDE, SIDE, rgba, index);
+}
+
+/* Reads a colour of a pattern. In a map of numbers, which `pattern` does not encode, the bytes of
+   "#rrggbb" are the numbers. */
+static bool pattern_color(struct reader *reader, const struct place *place, const json_t *value,
+                          const struct pattern *pattern, float out[3])
+{
+    if (!reader_color_value(reader, place, value, out))
+        return false;
+    for (int i = 0; i < 3; ++i) {
+        if (out[i] > 1.0f)
+            return reader_fail(
+                reader, place,
+                "patterns are at most 1; brighter ones need a factor, as `emission`");
+        if (json_is_string(value) && !pattern->encodes)
+            out[i] = image_srgb_from_linear(out[i]);
+    }
+    return true;
 }
 
 static bool made_texture(struct reader *reader, const struct place *place, const json_t *value,
-                         const char *kind, struct scene_texture_use *use)
+                         const char *kind, bool srgb, struct scene_texture_use *use)
 {
     static const char *const keys[] = {"colors", "size", NULL};
-    float colors[2][3];
+    struct pattern pattern = {.encodes = srgb};
     double size = 1.0;
     if (!reader_object(reader, place, value, keys) ||
         !reader_number(reader, place, value, "size", 1e-6, 1e6, &size))
@@ -133,18 +160,18 @@ static bool made_texture(struct reader *reader, const struct place *place, const
         return reader_fail(reader, list ? &at_colors : place, "`colors` takes two colours in [ ]");
     for (size_t i = 0; i < 2; ++i) {
         struct place here = {&at_colors, NULL, i};
-        if (!reader_color_value(reader, &here, json_array_get(list, i), colors[i]))
+        if (!pattern_color(reader, &here, json_array_get(list, i), &pattern, pattern.colors[i]))
             return false;
     }
     /* `size`: how many squares, bricks, or heights of the gradient there are per unit of uv. */
     bool checker = strcmp(kind, "checker") == 0, gradient = strcmp(kind, "gradient") == 0;
     use->transform[0] = use->transform[4] = (float)(checker ? 0.5 * size : size);
     use->nearest = checker;
-    if (gradient)
+    if (gradient && size <= 1.0) /* its ends do not blend */
         use->wrap_v = SCENE_WRAP_CLAMP;
-    return checker    ? add_checker(reader, colors, &use->texture)
-           : gradient ? add_gradient(reader, colors, &use->texture)
-                      : add_brick(reader, colors, &use->texture);
+    return checker    ? add_checker(reader, &pattern, &use->texture)
+           : gradient ? add_gradient(reader, &pattern, &use->texture)
+                      : add_brick(reader, &pattern, &use->texture);
 }
 
 static bool file_texture(struct reader *reader, const struct place *place, const char *name,
@@ -183,7 +210,7 @@ static bool texture_transform(struct reader *reader, const struct place *place, 
 }
 
 static bool texture_source(struct reader *reader, const struct place *place, const json_t *value,
-                           struct scene_texture_use *use)
+                           bool srgb, struct scene_texture_use *use)
 {
     static const char *const kinds[] = {"file", "checker", "gradient", "brick"};
     const char *kind = NULL;
@@ -200,14 +227,14 @@ static bool texture_source(struct reader *reader, const struct place *place, con
                            "`brick`");
     struct place here = {place, kind, 0};
     if (strcmp(kind, "file") != 0)
-        return made_texture(reader, &here, json_object_get(value, kind), kind, use);
+        return made_texture(reader, &here, json_object_get(value, kind), kind, srgb, use);
     const char *name = NULL;
     return reader_string(reader, place, value, "file", &name) &&
            file_texture(reader, &here, name, use);
 }
 
 static bool read_texture(struct reader *reader, const struct place *place, const json_t *object,
-                         const char *key, struct scene_texture_use *use)
+                         const char *key, bool srgb, struct scene_texture_use *use)
 {
     const json_t *value = json_object_get(object, key);
     struct place here = {place, key, 0};
@@ -217,7 +244,7 @@ static bool read_texture(struct reader *reader, const struct place *place, const
     if (json_is_string(value))
         return file_texture(reader, &here, json_string_value(value), use);
     if (!reader_object(reader, &here, value, texture_keys) ||
-        !texture_source(reader, &here, value, use) ||
+        !texture_source(reader, &here, value, srgb, use) ||
         !texture_transform(reader, &here, value, use) ||
         !reader_choice(reader, &here, value, "wrap", scene_wrap_names, &wrap) ||
         !reader_bool(reader, &here, value, "nearest", &use->nearest) ||
@@ -239,7 +266,9 @@ static bool read_textures(struct reader *reader, const struct place *place, cons
         [SCENE_SLOT_SPECULAR_LEVEL] = NULL, /* only in glTF */
     };
     for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
-        if (keys[slot] && !read_texture(reader, place, value, keys[slot], &out->textures[slot]))
+        bool srgb = scene_slot_is_srgb((enum scene_slot)slot, out->model);
+        if (keys[slot] &&
+            !read_texture(reader, place, value, keys[slot], srgb, &out->textures[slot]))
             return false;
     }
     return true;
@@ -278,7 +307,6 @@ static bool read_phong(struct reader *reader, const struct place *place, const j
 static bool read_metal_rough(struct reader *reader, const struct place *place, const json_t *value,
                              struct scene_material *out)
 {
-    out->model = WHIT_MODEL_METAL_ROUGH;
     out->fresnel = true;
     out->roughness = 0.5f;
     set_grey(out->diffuse, has(value, "texture") ? 1.0f : 0.8f);
@@ -298,7 +326,6 @@ static bool read_unlit(struct reader *reader, const struct place *place, const j
         return false;
     if (!unlit)
         return reader_fail(reader, &here, "leave `unlit` out for a material that is lit");
-    out->model = WHIT_MODEL_UNLIT;
     set_grey(out->diffuse, 1.0f);
     return reader_color(reader, place, value, "color", out->diffuse);
 }
@@ -368,6 +395,7 @@ static bool read_material(struct reader *reader, const struct place *place, cons
     for (size_t i = 0; metal_keys[i]; ++i)
         metal = !metal && has(value, metal_keys[i]) ? metal_keys[i] : metal;
     bool unlit = has(value, "unlit");
+    out->model = unlit ? WHIT_MODEL_UNLIT : metal ? WHIT_MODEL_METAL_ROUGH : WHIT_MODEL_PHONG;
     return check_keys(reader, place, value, unlit ? "unlit" : metal,
                       unlit   ? unlit_keys
                       : metal ? metal_keys
@@ -376,6 +404,28 @@ static bool read_material(struct reader *reader, const struct place *place, cons
            (unlit   ? read_unlit(reader, place, value, out)
             : metal ? read_metal_rough(reader, place, value, out)
                     : read_phong(reader, place, value, out));
+}
+
+/* A map times 0 is 0, and these factors are 0 unless they are given. */
+static void note_idle_maps(const struct reader *reader, const struct place *place,
+                           const struct scene_material *m)
+{
+    const struct {
+        enum scene_slot slot;
+        bool idle;
+        const char *map, *factor;
+    } maps[] = {
+        {SCENE_SLOT_EMISSION, largest(m->emission) == 0.0f, "emission_map", "`emission` is"},
+        {SCENE_SLOT_TRANSMISSION, largest(m->transmission) == 0.0f, "transmission_map",
+         "`transmission` is"},
+        {SCENE_SLOT_SPECULAR, largest(m->specular) == 0.0f && largest(m->reflection) == 0.0f,
+         "specular_map", "`specular` and `reflection` are"},
+    };
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; ++i) {
+        if (maps[i].idle && m->textures[maps[i].slot].texture != SCENE_NONE)
+            scene_note(reader->scene, SCENE_NOTE_WARNING, "%s:%u: `%s` shows nothing, as %s 0",
+                       reader->path, reader_line(reader, place), maps[i].map, maps[i].factor);
+    }
 }
 
 static bool add_material(struct reader *reader, const struct place *place, const json_t *value,
@@ -393,6 +443,7 @@ static bool add_material(struct reader *reader, const struct place *place, const
         scene_material_finish(&material);
         return false;
     }
+    note_idle_maps(reader, place, &material);
     *index = scene_add_material(reader->scene, material);
     return *index != SCENE_NONE || reader_no_memory(reader);
 }
@@ -407,6 +458,8 @@ bool reader_materials(struct reader *reader, const struct place *place, const js
     {
         struct place here = {place, name, 0};
         uint32_t index;
+        if (strcmp(name, "comment") == 0)
+            continue;
         if (!add_material(reader, &here, material, name, &index))
             return false;
         if (!key_table_add(&reader->material_names, name, strlen(name), index))

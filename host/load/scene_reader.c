@@ -155,6 +155,9 @@ static const char *syntax_hint(const char *error)
 json_t *reader_parse(struct reader *reader)
 {
     json_error_t error;
+    size_t mark_bytes = text_mark_bytes(reader->text);
+    reader->text += mark_bytes;
+    reader->text_bytes -= mark_bytes;
     json_t *root = json_loadb(reader->text, reader->text_bytes, JSON_REJECT_DUPLICATES, &error);
     if (!root) {
         log_error(&reader->scene->log, "%s:%d:%d: %s%s", reader->path,
@@ -342,7 +345,7 @@ bool reader_count(struct reader *reader, const struct place *place, const json_t
     double number = 0.0;
     if (!value)
         return true;
-    if (!json_is_integer(value))
+    if (!json_is_number(value) || json_number_value(value) != floor(json_number_value(value)))
         return reader_fail(reader, &here, "a whole number is expected");
     if (!check_number(reader, &here, value, min, max, &number))
         return false;

@@ -392,9 +392,11 @@ whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
         return result == WHIT_OK ? stages_sample(target, chunk, progress, longest_ms) : result;
     }
     if (chunk->block_count == 1) {
-        log_error(&target->renderer->log, "there is no room for the rays of %d pixels",
-                  RENDER_BLOCK_PIXELS);
-        return WHIT_ERROR_STATUS;
+        log_error(&target->renderer->log,
+                  "there is no room for the rays of %d pixels: --depth is %u, --bailout %g",
+                  RENDER_BLOCK_PIXELS, target->renderer->params.depth,
+                  target->renderer->params.bailout);
+        return WHIT_ERROR_MEMORY;
     }
     uint32_t end = chunk->first_block + chunk->block_count;
     uint32_t max = (chunk->block_count + 1) / 2;

@@ -59,7 +59,7 @@ static uint32_t wrap_code(enum scene_wrap wrap)
 /* *out: index of a new use record for the slot of the material; TEXTURE_NONE if it has no
    texture. */
 static whit_result add_use(struct material_upload *up, const struct scene_material *m,
-                           enum scene_slot slot, bool srgb, uint32_t *out)
+                           enum scene_slot slot, uint32_t *out)
 {
     const struct scene_texture_use *use = &m->textures[slot];
     *out = TEXTURE_NONE;
@@ -74,7 +74,7 @@ static whit_result add_use(struct material_upload *up, const struct scene_materi
         .wrap = wrap_code(use->wrap_u) | wrap_code(use->wrap_v) << 2,
         .nearest = use->nearest,
         .uv_set = use->uv_set != 0,
-        .srgb = srgb,
+        .srgb = scene_slot_is_srgb(slot, m->model),
     };
     uint32_t image_slots = up->use_count;
     if (image == SCENE_NONE || !ARRAY_PUSH(up->uses, up->use_count, up->use_capacity, record) ||
@@ -125,13 +125,13 @@ static whit_result add_opacity(struct material_upload *up, const struct scene_ma
     if (own->texture != SCENE_NONE) {
         if (has_alpha(scene, own->texture))
             out->flags |= MATERIAL_OPACITY_ALPHA;
-        return add_use(up, m, SCENE_SLOT_OPACITY, false, &out->tex_opacity);
+        return add_use(up, m, SCENE_SLOT_OPACITY, &out->tex_opacity);
     }
     const struct scene_texture_use *diffuse = &m->textures[SCENE_SLOT_DIFFUSE];
     if (!has_alpha(scene, diffuse->texture))
         return WHIT_OK;
     out->flags |= MATERIAL_OPACITY_ALPHA;
-    return add_use(up, m, SCENE_SLOT_DIFFUSE, true, &out->tex_opacity);
+    return add_use(up, m, SCENE_SLOT_DIFFUSE, &out->tex_opacity);
 }
 
 /* Whether the kernels read the textures of a slot. */
@@ -203,23 +203,22 @@ static whit_result add_material(struct material_upload *up, uint32_t index)
     out->specular_level = m->specular_level;
     const struct {
         enum scene_slot slot;
-        bool srgb;
         uint32_t *use;
     } slots[] = {
-        {SCENE_SLOT_DIFFUSE, true, &out->tex_diffuse},
-        {SCENE_SLOT_SPECULAR, m->model == WHIT_MODEL_METAL_ROUGH, &out->tex_specular},
-        {SCENE_SLOT_EMISSION, true, &out->tex_emission},
-        {SCENE_SLOT_NORMAL, false, &out->tex_normal},
-        {SCENE_SLOT_BUMP, false, &out->tex_bump},
-        {SCENE_SLOT_METAL_ROUGH, false, &out->tex_metal_rough},
-        {SCENE_SLOT_TRANSMISSION, false, &out->tex_transmission},
-        {SCENE_SLOT_SPECULAR_LEVEL, false, &out->tex_specular_level},
+        {SCENE_SLOT_DIFFUSE, &out->tex_diffuse},
+        {SCENE_SLOT_SPECULAR, &out->tex_specular},
+        {SCENE_SLOT_EMISSION, &out->tex_emission},
+        {SCENE_SLOT_NORMAL, &out->tex_normal},
+        {SCENE_SLOT_BUMP, &out->tex_bump},
+        {SCENE_SLOT_METAL_ROUGH, &out->tex_metal_rough},
+        {SCENE_SLOT_TRANSMISSION, &out->tex_transmission},
+        {SCENE_SLOT_SPECULAR_LEVEL, &out->tex_specular_level},
     };
     for (size_t i = 0; i < sizeof slots / sizeof *slots; ++i) {
         *slots[i].use = TEXTURE_NONE;
         if (!reads_slot(up->renderer, slots[i].slot))
             continue;
-        whit_result result = add_use(up, m, slots[i].slot, slots[i].srgb, slots[i].use);
+        whit_result result = add_use(up, m, slots[i].slot, slots[i].use);
         if (result != WHIT_OK)
             return result;
     }

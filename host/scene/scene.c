@@ -167,6 +167,12 @@ void scene_texture_use_init(struct scene_texture_use *out)
     *out = (struct scene_texture_use){.texture = SCENE_NONE, .transform = {1, 0, 0, 0, 1, 0}};
 }
 
+bool scene_slot_is_srgb(enum scene_slot slot, whit_material_model model)
+{
+    return slot == SCENE_SLOT_DIFFUSE || slot == SCENE_SLOT_EMISSION ||
+           (slot == SCENE_SLOT_SPECULAR && model == WHIT_MODEL_METAL_ROUGH);
+}
+
 void scene_material_init(struct scene_material *out, const char *name)
 {
     *out = (struct scene_material){

@@ -301,6 +301,9 @@ void scene_drop_pictures(struct scene *scene);
    without a texture; a node with the identity. `name` is copied. */
 void scene_material_init(struct scene_material *out, const char *name);
 void scene_texture_use_init(struct scene_texture_use *out);
+/* Whether colours in textures of the slot are sRGB. Other slots have numbers, and alpha always is a
+   number. */
+bool scene_slot_is_srgb(enum scene_slot slot, whit_material_model model);
 void scene_node_init(struct scene_node *out, const char *name, uint32_t parent);
 
 /* Each takes ownership of what its argument points to (on failure too) and gives the new index, or

@@ -248,7 +248,7 @@ whit_result shape_torus(double radius, double tube, uint32_t segments, uint32_t 
             shape_circle_point(j, sides, &ct, &st);
             double n[3] = {ct * c, st, -ct * s}, reach = radius + tube * ct;
             shaper_vertex(&shaper, (double[]){reach * c, tube * st, -reach * s}, n,
-                          (double)i / segments, (double)j / sides);
+                          (double)i / segments, 1.0 - (double)j / sides);
         }
     }
     for (uint32_t i = 0; i < segments; ++i) {

@@ -207,28 +207,44 @@ static bool is_in(const float *corners, const struct part *part)
     return in;
 }
 
-/* The box of all triangles whose corners are in the core, or outside of it by no more than half the
-   core's diagonal along each axis. */
-static struct part find_part(const struct soup *soup)
+/* The box of all triangles whose corners are in the core, or outside of it by no more than `around`
+   along each axis. *count: how many there are. */
+static struct part find_box(const struct soup *soup, struct part core, double around,
+                            uint32_t *count)
 {
-    struct part core, part = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (int k = 0; k < 3; ++k)
-        find_core(soup, k, &core);
-    double around = 0.5 * size_of(&core);
+    struct part part = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (int k = 0; k < 3; ++k) {
         core.lo[k] -= around;
         core.hi[k] += around;
     }
+    *count = 0;
     for (size_t t = 0; t < soup->count; ++t) {
         const float *p = soup->corners + 9 * t;
         if (!is_in(p, &core))
             continue;
+        ++*count;
         for (int i = 0; i < 9; ++i) {
             part.lo[i % 3] = fmin(part.lo[i % 3], (double)p[i]);
             part.hi[i % 3] = fmax(part.hi[i % 3], (double)p[i]);
         }
     }
     return part;
+}
+
+/* The part that nearly all triangles are in. Long triangles, as those of a cone, reach farther
+   beyond the core, which is one of centroids. False: there is no such part that is small. */
+static bool find_part(const struct soup *soup, struct part *part)
+{
+    struct part core;
+    uint32_t count = 0;
+    for (int k = 0; k < 3; ++k)
+        find_core(soup, k, &core);
+    for (double reach = 0.5; reach <= 4.0; reach *= 2.0) {
+        *part = find_box(soup, core, reach * size_of(&core), &count);
+        if (count >= (1.0 - 6.0 * TAIL) * soup->count)
+            return size_of(part) > 0.0 && size_of(part) <= PART * 2.0;
+    }
+    return false;
 }
 
 /* Appends to `narrow` the triangles that are in the part, or (`in` false) the others. */
@@ -250,8 +266,8 @@ whit_result soup_narrow(const struct soup *soup, struct soup *narrow)
     *narrow = (struct soup){0};
     if (!soup->whole || !soup->count || soup->fit_count != soup->count)
         return WHIT_OK;
-    struct part part = find_part(soup);
-    if (!(size_of(&part) > 0.0) || size_of(&part) > PART * 2.0)
+    struct part part;
+    if (!find_part(soup, &part))
         return WHIT_OK;
     narrow->corners = array_alloc(soup->count, 9 * sizeof *narrow->corners);
     narrow->pictured = array_alloc(soup->count, sizeof *narrow->pictured);

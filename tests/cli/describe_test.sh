@@ -49,5 +49,7 @@ check "knobs, arithmetic too" test "$(complete_words cost --knobs ar)" = arithme
 check "gone options are not offered" test -z "$("$WHIT" --complete render | grep '^--tree')"
 (cd "$SCENES" && complete_words render cub) >"$OUT/files"
 check "files" test "$(cat "$OUT/files")" = cube.json
+(cd "$SCENES" && complete_words cub) >"$OUT/files"
+check "files in place of a command" test "$(cat "$OUT/files")" = cube.json
 check "an about behind each word" test -z "$("$WHIT" --complete | grep -v "$tab.")"
 finish

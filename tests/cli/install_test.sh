@@ -53,6 +53,9 @@ if command -v pkg-config >/dev/null && [ -z "${CFLAGS_EXTRA:-}" ]; then
         "$(PKG_CONFIG_PATH=$(dirname "$library")/pkgconfig pkg-config --variable=pythondir whit)/whit.py"
 fi
 check "the installed program runs" bin/whit --version
+check "a scene finds its schema" test -s share/whit/scenes/../docs/scene.schema.json
+check "a document finds scenes and shaders" test -s share/doc/whit/docs/../scenes/cube.json -a \
+    -s share/doc/whit/shaders/examples/toon.glsl
 check "an installed scene has its map" quietly bin/whit scene share/whit/scenes/gallery/normal-map.json
 
 # Files for file managers: each MIME type that they name is known, by whit's own list or by shared-mime-info.

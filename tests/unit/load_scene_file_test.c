@@ -360,6 +360,54 @@ TEST_IN(patterns_become_textures, folder_begin, folder_end)
     assert_true(material_named(scene, "a")->diffuse[0] == 1.0f);
 }
 
+/* Bytes of texel `row` of a pattern one texel wide. */
+static const uint8_t *texel_of(const struct scene *scene, const char *material,
+                               enum scene_slot slot, uint32_t row)
+{
+    const struct scene_texture_use *use = &material_named(scene, material)->textures[slot];
+    return scene->textures[use->texture].rgba + 4 * (size_t)row;
+}
+
+TEST_IN(patterns_of_numbers_are_not_encoded, folder_begin, folder_end)
+{
+    static const char ramp[] = "{\"gradient\":{\"colors\":[0,0.5],\"size\":";
+    char text[1024];
+    snprintf(text, sizeof text,
+             "{\"materials\":{\"comment\":\"none\",\"a\":{\"texture\":%s1.0}},"
+             "\"opacity_map\":%s4}}},"
+             "\"b\":{\"metallic\":1,\"specular_map\":%s1}},"
+             "\"normal_map\":{\"checker\":{\"colors\":[\"#8080ff\",\"#8080ff\"]}}}}}",
+             ramp, ramp, ramp);
+    own_scene *scene = load_fine(text);
+    assert_int_equal(texel_of(scene, "a", SCENE_SLOT_DIFFUSE, 255)[0], 188);
+    assert_int_equal(texel_of(scene, "a", SCENE_SLOT_OPACITY, 255)[0], 128);
+    assert_int_equal(texel_of(scene, "a", SCENE_SLOT_OPACITY, 102)[0], 51);
+    assert_int_equal(texel_of(scene, "b", SCENE_SLOT_SPECULAR, 255)[0], 188);
+    assert_int_equal(texel_of(scene, "b", SCENE_SLOT_NORMAL, 0)[0], 128);
+    const struct scene_material *a = material_named(scene, "a");
+    assert_int_equal(a->textures[SCENE_SLOT_DIFFUSE].wrap_v, SCENE_WRAP_CLAMP);
+    assert_int_equal(a->textures[SCENE_SLOT_OPACITY].wrap_v, SCENE_WRAP_REPEAT);
+    assert_error("{\"materials\":{\"a\":{\"texture\":{\"brick\":{\"colors\":[0,[0,2,0]]}}}}}",
+                 "test.json:1:52: materials.a.texture.brick.colors[1]: patterns are at most 1");
+}
+
+TEST_IN(maps_without_their_factor_are_noted, folder_begin, folder_end)
+{
+    static const char *const maps[] = {"emission", "specular", "transmission"};
+    for (int i = 0; i < 3; ++i) {
+        for (int given = 0; given < 2; ++given) {
+            char text[256];
+            snprintf(text, sizeof text,
+                     "\xef\xbb\xbf{\"objects\":[\n{\"shape\":\"box\",\"material\":{\"%s\":%d,"
+                     "\"%s_map\":{\"brick\":{\"colors\":[0,1]}}}}]}",
+                     maps[i], given, maps[i]);
+            own_scene *scene = load_fine(text);
+            snprintf(text, sizeof text, "test.json:2: `%s_map` shows nothing", maps[i]);
+            assert_int_equal(scene_noted(scene, text), !given);
+        }
+    }
+}
+
 static void lights_cameras_and_sky(void)
 {
     own_scene *scene = load_fine(

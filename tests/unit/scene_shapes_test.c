@@ -146,6 +146,12 @@ TEST(rings_and_rods)
     struct scene_mesh mesh;
     double pi = 3.14159265358979;
     assert_int_equal(shape_torus(3.0, 1.0, 64, 32, &mesh), WHIT_OK);
+    /* On the outside v grows downwards, as in pictures; it is 1 and 0 at half height. */
+    for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
+        const float *p = mesh.positions + 3 * (size_t)i, *uv = mesh.uvs[0] + 2 * (size_t)i;
+        if (p[0] * p[0] + p[2] * p[2] > 9.1f)
+            assert_true(p[1] > 0.01f ? uv[1] > 0.5f : p[1] > -0.01f || uv[1] < 0.5f);
+    }
     check_closed(&mesh, 4096, 0.98 * 6.0 * pi * pi, 6.0 * pi * pi);
     assert_int_equal(shape_cylinder(1.0, 1.0, 2.0, 64, &mesh), WHIT_OK);
     check_closed(&mesh, 256, 0.99 * 2.0 * pi, 2.0 * pi);

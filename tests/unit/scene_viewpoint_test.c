@@ -224,6 +224,22 @@ TEST(small_parts_with_nearly_all_triangles_fill_the_picture)
     scene_destroy(scene);
 }
 
+/* The tips of these cones are far from the centroids of their triangles. */
+TEST(long_triangles_of_a_part_are_in_the_picture)
+{
+    struct scene *scene = empty_scene();
+    struct scene_mesh cone;
+    assert_int_equal(shape_cylinder(0.5, 0.0, 2.0, 64, &cone), WHIT_OK);
+    scene_put(scene, mesh_plane(20), NULL);
+    scene_put(scene, cone, &(struct put){.at = {0, 1, 0}});
+    double forward[3], slope[2];
+    const struct scene_camera *camera = camera_of(scene, forward);
+    assert_true(scene_noted(scene, "shows the small part of it that nearly all triangles are in"));
+    assert_true(reach(camera, forward, (const float[]){0, 2, 0}, slope) > 0.0);
+    assert_true(fabs(slope[1]) < 1.0);
+    scene_destroy(scene);
+}
+
 /* The picture has room for an object that flies away later. */
 TEST(animations_stay_in_the_picture)
 {

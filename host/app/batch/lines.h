@@ -13,6 +13,8 @@ enum { LINE_SCENE, LINE_KERNEL, LINE_GROUPS };
 struct line_place {
     size_t at, bytes;
     uint64_t group[LINE_GROUPS]; /* for each LINE_* grouping, equal in lines of the same group */
+    uint64_t output;             /* hash of the name of -o */
+    uint32_t first_frame, last_frame;
     uint32_t number;
     bool left; /* it is still to be drawn */
 };

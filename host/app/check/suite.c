@@ -8,6 +8,7 @@
 #include "app/arguments.h"
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 
 enum { SUITE_BYTES_MAX = 1 << 20, WORDS_MAX = 256, SAID_BYTES = 2048, WHERE_BYTES = 600 };
 
@@ -299,7 +300,8 @@ bool suite_read(struct suite *suite, const char *path, const char *root, suite_n
     bool whole = begin_roots(suite, root) || refuse(&line, "out of memory");
     if (whole && strlen((const char *)data) != size_bytes)
         whole = refuse(&line, "not a suite: it has bytes that are 0");
-    for (char *text = (char *)data, *end; whole && text && !is_too_long(suite); text = end) {
+    char *first = (char *)data + text_mark_bytes((const char *)data);
+    for (char *text = first, *end; whole && text && !is_too_long(suite); text = end) {
         end = strchr(text, '\n');
         if (end)
             *end++ = '\0';

@@ -8,10 +8,8 @@ _whit() {
     elif [ "${previous#--}" != "$previous" ]; then
         words=$("$1" --complete "${COMP_WORDS[1]}" "$previous" 2>/dev/null | cut -f 1)
     fi
-    if [ -n "$words" ]; then
-        mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
-    else
-        mapfile -t COMPREPLY < <(compgen -f -- "$current")
-    fi
+    COMPREPLY=()
+    [ -z "$words" ] || mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+    [ -n "${COMPREPLY[0]}" ] || mapfile -t COMPREPLY < <(compgen -f -- "$current")
 }
 complete -o filenames -F _whit whit
