@@ -139,38 +139,57 @@ static double pictures_to_judge(const struct cost_report *report)
     return (4.0 / 3.0 + 1.0) * report->reference_samples;
 }
 
+/* The largest factor by which the judged picture may be smaller than the requested one. */
+static uint32_t shrink_most(const struct measure *measure)
+{
+    const double width_min = fmax(SIDE_MIN, measure->request->judged_width_min),
+                 height_min = fmax(SIDE_MIN, measure->request->judged_height_min);
+    uint32_t shrink = 1;
+    while (shrink < SHRINK_MAX && measure->report->width / shrink / 2.0 >= width_min &&
+           measure->report->height / shrink / 2.0 >= height_min)
+        shrink *= 2;
+    return shrink;
+}
+
+/* Whether references and judged pictures take at most `seconds`. Cached references take no time. */
 static bool fits(const struct measure *measure, double pixel_ms, uint32_t shrink, double seconds)
 {
     const struct cost_report *report = measure->report;
     double width = report->width / shrink, height = report->height / shrink;
-    double all_ms = pixel_ms * (report->reference_samples + 1) +
-                    measure->usual_pixel_ms * pictures_to_judge(report);
-    return all_ms * width * height <= seconds * 1e3 ||
-           width / 2.0 < fmax(SIDE_MIN, measure->request->judged_width_min) ||
-           height / 2.0 < fmax(SIDE_MIN, measure->request->judged_height_min);
+    double all_ms = measure->usual_pixel_ms * pictures_to_judge(report);
+    if (!is_kept(measure, shrink))
+        all_ms += pixel_ms * (report->reference_samples + 1);
+    return all_ms * width * height <= seconds * 1e3;
+}
+
+static uint32_t shrink_to_fit(const struct measure *measure, double pixel_ms, uint32_t most,
+                              double seconds)
+{
+    uint32_t shrink = 1;
+    while (shrink < most && !fits(measure, pixel_ms, shrink, seconds))
+        shrink *= 2;
+    return shrink;
 }
 
 /* Chooses by which factor the judged picture is smaller than the requested one, so that references
-   and judged pictures take at most `seconds`. Where SHRINK_GOOD would not do, the reference also
-   gets fewer samples. A size whose references are cached is taken at once. */
+   and judged pictures take at most `seconds`, or else as little as the least size allows. Where
+   SHRINK_GOOD would not do, the reference gets fewer samples. */
 static whit_result choose_shrink(struct measure *measure, double seconds, uint32_t *shrink)
 {
     struct cost_report *report = measure->report;
+    const uint32_t most = shrink_most(measure), good = most < SHRINK_GOOD ? most : SHRINK_GOOD;
+    bool free_samples = measure->request->samples_max == 0;
     whit_image *image = NULL;
     double ms = 0.0;
-    for (*shrink = 1; *shrink < SHRINK_MAX; *shrink *= 2) {
-        if (is_kept(measure, *shrink))
-            return WHIT_OK;
-    }
     const whit_renderer_params probe = reference_params(measure, SHRINK_MAX, 1);
     whit_result result = render(measure, &probe, &image, &ms);
     whit_image_destroy(image);
     double pixel_ms = ms / ((double)probe.width * probe.height);
-    if (measure->request->samples_max == 0 && !fits(measure, pixel_ms, SHRINK_GOOD, seconds))
+    *shrink = shrink_to_fit(measure, pixel_ms, free_samples ? good : most, seconds);
+    if (free_samples && !fits(measure, pixel_ms, *shrink, seconds)) {
         report->reference_samples = SAMPLES_FEW;
-    *shrink = 1;
-    while (*shrink < SHRINK_MAX && !fits(measure, pixel_ms, *shrink, seconds))
-        *shrink *= 2;
+        *shrink = shrink_to_fit(measure, pixel_ms, most, seconds);
+    }
     return result;
 }
 
