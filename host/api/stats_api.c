@@ -28,6 +28,7 @@ void whit_stats_add(const whit_stats *from, whit_stats *to)
     to->rays_shadow += from->rays_shadow;
     to->rays_reflected += from->rays_reflected;
     to->rays_refracted += from->rays_refracted;
+    to->rays_straight += from->rays_straight;
     to->rays_by_functions += from->rays_by_functions;
     to->rays_of_estimate += from->rays_of_estimate;
     to->rays_cut_depth += from->rays_cut_depth;

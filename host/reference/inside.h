@@ -71,7 +71,8 @@ struct tracer {
     const struct reference *reference;
     uint32_t sample; /* index of the pixel's sample; shifts the points of area lights */
     uint32_t x, y;   /* the pixel */
-    uint64_t rays[RAY_KIND_COUNT], cut_depth, cut_bailout; /* traced; not traced, by reason */
+    uint64_t rays[REFERENCE_STRAIGHT + 1]; /* traced, by kind */
+    uint64_t cut_depth, cut_bailout;       /* not traced, by reason */
     bool too_many_media, lacks_memory;
     struct ray *stack; /* rays that are still to be traced */
     uint32_t stack_count, stack_capacity;

@@ -200,6 +200,7 @@ static void add_rays(const struct tracer *from, whit_stats *to)
     to->rays_shadow += from->rays[RAY_SHADOW];
     to->rays_reflected += from->rays[RAY_REFLECTED];
     to->rays_refracted += from->rays[RAY_REFRACTED];
+    to->rays_straight += from->rays[REFERENCE_STRAIGHT];
     to->rays_cut_depth += from->cut_depth;
     to->rays_cut_bailout += from->cut_bailout;
 }

@@ -93,8 +93,7 @@ static bool push_ray(struct tracer *tracer, const struct ray *ray, bool deep)
         record_ray(tracer, ray, deep ? WHIT_PROBE_DEPTH : WHIT_PROBE_BAILOUT);
         return true;
     }
-    if (ray->kind < RAY_KIND_COUNT)
-        ++tracer->rays[ray->kind];
+    ++tracer->rays[ray->kind];
     if (!ARRAY_PUSH(tracer->stack, tracer->stack_count, tracer->stack_capacity, *ray))
         tracer->lacks_memory = true;
     return true;

@@ -87,8 +87,9 @@ static bool rays_hold(const struct pair *pair, const whit_shader_expectation *ex
     uint64_t counts[2] = {0};
     for (int i = 0; i < 2; ++i) {
         const uint64_t kinds[] = {stats[i].rays_primary, stats[i].rays_shadow,
-                                  stats[i].rays_reflected, stats[i].rays_refracted};
-        for (uint32_t k = 0; k < 4; ++k) {
+                                  stats[i].rays_reflected, stats[i].rays_refracted,
+                                  stats[i].rays_straight};
+        for (uint32_t k = 0; k < 5; ++k) {
             bool wanted = expected->what == WHIT_EXPECT_RAYS ||
                           (uint32_t)expected->what == (uint32_t)WHIT_EXPECT_CAMERA + k;
             counts[i] += wanted ? kinds[k] : 0;

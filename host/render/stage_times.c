@@ -138,4 +138,10 @@ void stage_times_scale(const struct renderer *renderer, whit_stats *stats)
                      row - RENDER_STAGE_SHADOW);
         stage->ms = timed->items ? timed->ms * (double)stage->rays / (double)timed->items : -1.0;
     }
+    /* Blocks at the edges of the picture also have slots outside of it, without rays. */
+    whit_stage *camera = &stats->stages[RENDER_STAGE_CAMERA];
+    if (camera->rays > stats->rays_primary) {
+        stats->stages[RENDER_STAGE_RESOLVE].rays -= camera->rays - stats->rays_primary;
+        camera->rays = stats->rays_primary;
+    }
 }

@@ -24,6 +24,8 @@ void renderer_get_stats(const struct renderer *renderer, whit_stats *stats)
     *stats = renderer->picture.stats;
     stats->packets = renderer->packets && renderer->packet_stack_size <= PACKET_STACK_MAX;
     stage_times_scale(renderer, stats);
+    stats->rays_straight =
+        stats->stages[RENDER_STAGE_CLOSEST].rays - stats->rays_reflected - stats->rays_refracted;
     material_shares_get(&renderer->picture, stats);
     stats->bailout_bound = renderer->rendered ? bailout_bound(renderer) : -1.0;
     if (stats->render_ms > 0.0)

@@ -170,6 +170,8 @@ static void draw_more(const struct view *view)
     ui_text("rays: %llu camera, %llu shadow, %llu reflected, %llu refracted",
             (unsigned long long)s->rays_primary, (unsigned long long)s->rays_shadow,
             (unsigned long long)s->rays_reflected, (unsigned long long)s->rays_refracted);
+    if (s->rays_straight)
+        ui_text("%llu straight on", (unsigned long long)s->rays_straight);
     if (s->rays_by_functions)
         ui_text("%llu by functions of the shader", (unsigned long long)s->rays_by_functions);
     if (s->rays_of_estimate)

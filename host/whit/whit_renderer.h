@@ -315,6 +315,8 @@ typedef struct whit_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms; /* render_device_ms < 0: not
                                                                   measured */
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
+    uint64_t rays_straight;     /* sent on by surfaces that let light pass unbent: by opacity or a
+                                   texture's alpha, as shadow catchers, by straight of scatter() */
     uint64_t rays_by_functions; /* rays of all kinds that functions of params.shader traced
                                    themselves */
     uint64_t rays_of_estimate;  /* traced only for whit_refine_info.cut_radiance: no rays of the
@@ -349,7 +351,7 @@ typedef struct whit_stats {
 static inline uint64_t whit_stats_rays(const whit_stats *stats)
 {
     return stats->rays_primary + stats->rays_shadow + stats->rays_reflected +
-           stats->rays_refracted + stats->rays_by_functions;
+           stats->rays_refracted + stats->rays_straight + stats->rays_by_functions;
 }
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats);
 /* Adds the statistics of one more picture to those of others: counts and times are summed, weights

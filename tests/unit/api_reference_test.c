@@ -12,7 +12,7 @@ static void note_progress(void *user, double done)
 
 TEST(draws_pictures_and_ray_trees)
 {
-    scene_open(WHIT_SCENES_DIR "/default.json");
+    scene_open(WHIT_SCENES_DIR "/layers.json");
     double last = 0.0;
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, NULL);
     params.all_effects = true;
@@ -24,7 +24,7 @@ TEST(draws_pictures_and_ray_trees)
     assert_int_equal(whit_reference_render(reference, &color, &ids), WHIT_OK);
     assert_true(last == 1.0);
     whit_stats stats;
-    uint64_t of_kind[WHIT_RAY_KINDS] = {0};
+    uint64_t of_kind[WHIT_RAY_KINDS] = {0}, straight = 0;
     whit_reference_get_stats(reference, &stats);
     for (uint32_t i = 0; i < WIDTH * HEIGHT; ++i) {
         whit_probe_ray *rays = NULL;
@@ -36,8 +36,8 @@ TEST(draws_pictures_and_ray_trees)
         for (uint32_t k = 0; k < count; ++k)
             sum += rays[k].kind == WHIT_RAY_SHADOW ? 0.0 : (double)rays[k].added[1];
         for (uint32_t k = 0; k < count; ++k)
-            of_kind[rays[k].kind] += !rays[k].straight && rays[k].end != WHIT_PROBE_DEPTH &&
-                                     rays[k].end != WHIT_PROBE_BAILOUT;
+            *(rays[k].straight ? &straight : &of_kind[rays[k].kind]) +=
+                rays[k].end != WHIT_PROBE_DEPTH && rays[k].end != WHIT_PROBE_BAILOUT;
         assert_true(fabs(sum - (double)whit_image_floats(color)[4 * i + 1]) <= 1e-6 * sum);
         assert_int_equal(rays[0].device.instance, whit_image_words(ids)[2 * i]);
         assert_int_equal(rays[0].device.primitive, whit_image_words(ids)[2 * i + 1]);
@@ -47,6 +47,8 @@ TEST(draws_pictures_and_ray_trees)
     assert_int_equal(stats.rays_shadow, of_kind[WHIT_RAY_SHADOW]);
     assert_int_equal(stats.rays_reflected, of_kind[WHIT_RAY_REFLECTED]);
     assert_int_equal(stats.rays_refracted, of_kind[WHIT_RAY_REFRACTED]);
+    assert_true(straight > 0);
+    assert_int_equal(stats.rays_straight, straight);
     whit_reference_destroy(reference);
     scene_close();
 }

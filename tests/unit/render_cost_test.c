@@ -288,6 +288,7 @@ static void check_sums(const struct counted *counted)
     assert_true(stats->costs[RAY_SHADOW].rays == stats->rays_shadow);
     assert_true(stats->costs[RAY_REFLECTED].rays == stats->rays_reflected);
     assert_true(stats->costs[RAY_REFRACTED].rays == stats->rays_refracted);
+    assert_true(stats->stages[RENDER_STAGE_CAMERA].rays == stats->rays_primary);
 }
 
 /* The width is no multiple of 8, and tiles are smaller than the picture. */

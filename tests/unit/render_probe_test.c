@@ -37,9 +37,9 @@ static void add_to_sums(const struct probe_report *report, struct sums *sums)
         ++sums->ends[ray->traced.end];
         sums->cut_depth += ray->traced.end == PROBE_DEPTH;
         sums->cut_bailout += ray->traced.end == PROBE_BAILOUT;
-        /* A ray that goes straight on through a blended surface is not counted as another ray. */
+        /* A ray that goes straight on through a blended surface is of no kind of its own. */
         sums->kinds[kind_of(ray)] += !straight && !is_cut(ray);
-        sums->straight += straight;
+        sums->straight += straight && !is_cut(ray);
         sums->through += (ray->traced.kind & PROBE_THROUGH) != 0;
         sums->passed += ray->passed;
         sums->exact += ray->exact_known;
@@ -182,6 +182,7 @@ static struct sums probe_picture(struct fixture *f)
         assert_int_equal(sums.kinds[RAY_SHADOW], stats->rays_shadow);
         assert_int_equal(sums.kinds[RAY_REFLECTED], stats->rays_reflected);
         assert_int_equal(sums.kinds[RAY_REFRACTED], stats->rays_refracted);
+        assert_int_equal(sums.straight, stats->rays_straight);
         assert_int_equal(sums.cut_depth, stats->rays_cut_depth);
         assert_int_equal(sums.cut_bailout, stats->rays_cut_bailout);
     }

@@ -52,7 +52,7 @@ static whit_result read_all_rays(drawing_t *drawing, expectation_t *one, struct 
     const whit_stats *stats = &drawing->stats;
     (void)one;
     value->numbers[0] = (double)(stats->rays_primary + stats->rays_shadow + stats->rays_reflected +
-                                 stats->rays_refracted);
+                                 stats->rays_refracted + stats->rays_straight);
     return WHIT_OK;
 }
 

@@ -146,6 +146,7 @@ static void add_counters(struct merge *merge, const struct merge_part *part, dou
     stats->rays_shadow += get_rays(rays, "shadow");
     stats->rays_reflected += get_rays(rays, "reflected");
     stats->rays_refracted += get_rays(rays, "refracted");
+    stats->rays_straight += get_rays(rays, "straight");
     stats->rays_by_functions += get_rays(rays, "by_functions");
     stats->rays_cut_depth += get_rays(rays, "cut_by_depth");
     stats->rays_cut_bailout += get_rays(rays, "cut_by_bailout");

@@ -35,6 +35,8 @@ json_t *recipe_rays(const whit_stats *stats)
     document_count(rays, "shadow", stats->rays_shadow);
     document_count(rays, "reflected", stats->rays_reflected);
     document_count(rays, "refracted", stats->rays_refracted);
+    if (stats->rays_straight)
+        document_count(rays, "straight", stats->rays_straight);
     if (stats->rays_by_functions)
         document_count(rays, "by_functions", stats->rays_by_functions);
     document_count(rays, "cut_by_depth", stats->rays_cut_depth);

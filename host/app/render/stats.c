@@ -85,6 +85,7 @@ static json_t *rays_document(const struct job *job, const struct figures *figure
     document_count(rays, "shadow", figures->render->rays_shadow);
     document_count(rays, "reflected", figures->render->rays_reflected);
     document_count(rays, "refracted", figures->render->rays_refracted);
+    document_count(rays, "straight", figures->render->rays_straight);
     if (job->shader)
         document_count(rays, "by_functions", figures->render->rays_by_functions);
     document_count(rays, "total", figures->rays);
@@ -282,6 +283,8 @@ static void print_rays(const struct figures *figures)
     printf("  %-18s %10llu\n", "shadow", (unsigned long long)figures->render->rays_shadow);
     printf("  %-18s %10llu\n", "reflected", (unsigned long long)figures->render->rays_reflected);
     printf("  %-18s %10llu\n", "refracted", (unsigned long long)figures->render->rays_refracted);
+    if (figures->render->rays_straight)
+        printf("  %-18s %10llu\n", "straight", (unsigned long long)figures->render->rays_straight);
     if (figures->render->rays_by_functions)
         printf("  %-18s %10llu\n", "by functions",
                (unsigned long long)figures->render->rays_by_functions);
