@@ -175,6 +175,7 @@ whit_renderer_params job_picture(const struct job *job)
 {
     whit_renderer_params params = settings_picture(&job->settings);
     params.shader = job->shader;
+    params.time_stages = job->settings.stats != STATS_NONE;
     params.cancel = &cli_cancel;
     params.time_limit_s = cli_time_left_s();
     return params;

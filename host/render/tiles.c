@@ -15,7 +15,6 @@
 #include "render/costs.h"
 #include "render/hooks.h"
 #include "render/lights.h"
-#include "render/material_shares.h"
 #include "render/pixels.h"
 #include "render/readback.h"
 #include "render/renderer.h"
@@ -426,7 +425,6 @@ whit_result render_all(struct renderer *renderer)
     if (result == WHIT_OK && !readback_is_late(renderer) && aovs)
         result = image_init(&renderer->aovs, params->width * aovs, rows, 4, false);
     stats_clear(&renderer->picture);
-    material_shares_clear(&renderer->picture);
     struct progress progress = render_progress(renderer);
     if (result == WHIT_OK)
         result = deferred_clear(&renderer->picture);

@@ -355,8 +355,9 @@ static inline uint64_t whit_stats_rays(const whit_stats *stats)
 }
 void whit_renderer_get_stats(const whit_renderer *renderer, whit_stats *stats);
 /* Adds the statistics of one more picture to those of others: counts and times are summed, weights
-   and bounds are maxima, tile_size and device_bytes are those of the picture added. Shares of
-   materials, upload and compilation of `to` stay as they are. */
+   and bounds are maxima, tile_size and device_bytes are those of the picture added. Where a stage
+   was timed in one picture alone, its rays of both are taken to take as long each; shares of
+   materials are means over the rays of a stage. Upload and compilation of `to` stay as they are. */
 void whit_stats_add(const whit_stats *from, whit_stats *to);
 
 /* ---- Rays ---- */

@@ -25,7 +25,8 @@ for i in 0 1 2 3; do
     check "no file is missing" test -s d.$i.exr
 done
 # shellcheck disable=SC2086
-expect 0 "a recipe" render scene.json --cameras cameras.json -o r.#.png $size -q
+expect 0 "a recipe" render scene.json --cameras cameras.json -o r.#.png $size -q --tile-size 16 --stats json
+check "stages have times" jq -e 'all(.stages[]; .ms > 0)' "$OUT/stdout"
 expect 0 "of a pinhole draws the view again" render r.0.png -o again.png --yes -q
 expect 0 "the same" compare r.0.png again.png
 refuse 2 "another kind" "r.1.png: its camera is one that --camera has no words for" render r.1.png -o again.png --yes

@@ -47,6 +47,8 @@ check "stats have every frame" jq -e '[.frames.each[].frame] == [0, 1, 2]' "$OUT
 check "stats have times of frames and their median" \
     jq -e 'all(.times, .frames.median, .frames.each[]; .build_instances_ms >= 0)' "$OUT/stdout"
 check "rays are summed up" jq -e '.rays.primary == 768' "$OUT/stdout"
+check "stages have times, though not every frame has a tile that was timed" jq -e 'all(.stages[]; .ms > 0)' "$OUT/stdout"
+check "and shares of materials" jq -e 'all(.stages[] | select(.name == "shade"); (.shares | map(.share) | add) - 1 | fabs < 1e-9)' "$OUT/stdout"
 
 # Numbers of cut rays and of pixels by samples are sums over the frames; of weights and bounds the largest is kept,
 # which here is that of the first frame.

@@ -30,6 +30,7 @@ check "stats have the samples" jq -es '.[0].picture.aa == .[1].picture.aa' refin
 check "and the same rays" jq -es '(.[0].rays | [.primary, .shadow, .reflected, .refracted,
     .cut_by_depth.rays, .cut_by_bailout.rays]) == (.[1].rays | [.primary, .shadow, .reflected,
     .refracted, .cut_by_depth.rays, .cut_by_bailout.rays])' refined.json stdout
+check "and times of stages" jq -e 'all(.stages[]; .ms > 0)' refined.json
 check "those of the estimate have a figure of their own" jq -e '.refine.estimate_rays > 32 * 24' refined.json
 check "and the same weights" jq -es '.[0].rays.cut_by_depth.weight_of_a_pixel as $a |
     .[1].rays.cut_by_depth.weight_of_a_pixel as $b | $a > 0 and ($a - $b | fabs) < 1e-5 * $a' \

@@ -191,7 +191,6 @@ whit_result render_create(const struct job *job, const struct render_request *re
     whit_renderer_params params = job_picture(job);
     params.many_pictures = request->frames.given || request->many;
     params.keep_unread = request->keep_unread;
-    params.time_stages = job->settings.stats != STATS_NONE;
     params.color_only = wants_color_only(job, request);
     params.progress = frames_progress_update;
     params.progress_user = progress;
