@@ -107,8 +107,9 @@ static double picture_share(const struct progress *progress)
            progress->share * (double)progress->work_done / (double)progress->work_total;
 }
 
-static void report_progress(const struct renderer *renderer, const struct progress *progress)
+static void report_progress(struct renderer *renderer, const struct progress *progress)
 {
+    renderer->picture.stats.render_ms = clock_ms() - progress->start_ms;
     if (renderer->params.progress)
         renderer->params.progress(renderer->params.progress_user, picture_share(progress));
 }

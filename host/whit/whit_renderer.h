@@ -313,7 +313,8 @@ enum { WHIT_SAMPLE_LEVELS = 7 };
 
 typedef struct whit_stats {
     double upload_ms, compile_ms, render_ms, render_device_ms; /* render_device_ms < 0: not
-                                                                  measured */
+                                                                  measured; render_ms, in a call of
+                                                                  params.progress: until then */
     uint64_t rays_primary, rays_shadow, rays_reflected, rays_refracted;
     uint64_t rays_straight;     /* sent on by surfaces that let light pass unbent: by opacity or a
                                    texture's alpha, as shadow catchers, by straight of scatter() */

@@ -130,6 +130,10 @@ if part 1 2; then
     check "takes the most samples" grep -q "^whit: note: chosen: --aa 64.*; predicted" "$OUT/stderr"
     most=$(chosen)
     check "says what it took" grep -q "^whit: note: it took [0-9.]* of 1e+06 ms$" "$OUT/stderr"
+    export WHIT_TEST_WRONG=compile
+    expect 0 "kernels that take that time" render $enough
+    unset WHIT_TEST_WRONG
+    check "are no part of it" test "$(grep -c "it will take" "$OUT/stderr")" -eq 0
     expect 0 "an error that one sample has" render $tiny --max-error 0.9
     check "is not measured again" test "$(grep -c "measuring" "$OUT/stderr")" -eq 0
     check "takes less" test "$(grep -c "chosen: --aa" "$OUT/stderr")" -eq 0

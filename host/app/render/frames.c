@@ -115,8 +115,12 @@ bool frames_check(struct cli_reader *reader, const struct job *job,
    assumes a quarter, because the first parts may be the most expensive ones. */
 static void watch_budget(struct frames_progress *progress, double done)
 {
-    double will_ms = (whit_clock_ms() - progress->bar.start_ms) / fmax(done, 0.25);
-    if (progress->said || progress->budget_ms <= 0.0 || will_ms <= progress->budget_ms)
+    whit_stats stats;
+    if (progress->said || progress->budget_ms <= 0.0)
+        return;
+    whit_renderer_get_stats(progress->renderer, &stats);
+    double will_ms = stats.render_ms / fmax(done, 0.25);
+    if (will_ms <= progress->budget_ms)
         return;
     progress->said = true;
     cli_note("it will take about %.0f ms, not %.6g: the device is slower now than just before",

@@ -50,6 +50,7 @@ struct frames_progress {
     uint32_t parts;       /* how many of these are drawn at once; 0: 1 */
     double budget_ms;     /* budget of a picture; 0: none. A note says, once, that a picture will
                              take longer */
+    const whit_renderer *renderer; /* which draws the picture with a budget */
     bool said;
     uint32_t line, lines; /* the number of this piece of work, and of how many; lines 0: it is the
                              only one */

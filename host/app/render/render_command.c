@@ -517,6 +517,7 @@ static int work(struct job *job, const struct render_request *request)
     whit_result result = render_prepare(job, request, &progress, &renderer);
     progress.bar.start_ms = whit_clock_ms();
     progress.budget_ms = job->settings.budget_ms;
+    progress.renderer = renderer;
     if (result == WHIT_OK) {
         status = render_draw(job, request, renderer, &progress, &sequence);
     } else {
