@@ -58,15 +58,16 @@ static whit_result compare_with_usual(const struct measure *measure, const whit_
     return result;
 }
 
-static bool changes_samples(const struct cost_row *row)
+static bool changes_samples(const struct settings *target)
 {
-    return strcmp(row->knob, "aa") == 0;
+    const whit_sampling *sampling = &target->picture.sampling;
+    return sampling->kind != WHIT_SAMPLING_FIXED || sampling->count != 1;
 }
 
 /* Compares images with the references. The first images, those of the usual settings, become
    measure->usual_color and usual_ids; later ones stay the caller's. */
-static whit_result judge_images(struct measure *measure, whit_image *color, whit_image *ids,
-                                struct cost_row *row)
+static whit_result judge_images(struct measure *measure, const struct settings *target,
+                                whit_image *color, whit_image *ids, struct cost_row *row)
 {
     whit_image *map = NULL;
     if (!measure->usual_color) {
@@ -76,7 +77,7 @@ static whit_result judge_images(struct measure *measure, whit_image *color, whit
     whit_result result = compare_with_usual(measure, color, ids, row);
     if (result == WHIT_OK)
         result = compare(measure, measure->references[1], color, true, &row->error, &map);
-    if (result == WHIT_OK && !changes_samples(row))
+    if (result == WHIT_OK && !changes_samples(target))
         result = compare(measure, measure->references[0], color, true, &row->alone, NULL);
     row->non_finite = row->error.nonfinite_b;
     if (measure->request->keep_pictures && result == WHIT_OK)
@@ -95,14 +96,15 @@ static void drop(const struct measure *measure, whit_image *color, whit_image *i
 }
 
 /* Judges the picture that the renderer has drawn last, at the judged size. */
-static whit_result judge(struct measure *measure, whit_renderer *renderer, struct cost_row *row)
+static whit_result judge(struct measure *measure, const struct settings *target,
+                         whit_renderer *renderer, struct cost_row *row)
 {
     whit_image *color = NULL, *ids = NULL;
     whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &color);
     if (result == WHIT_OK)
         result = whit_renderer_image(renderer, WHIT_AOV_IDS, &ids);
     if (result == WHIT_OK)
-        result = judge_images(measure, color, ids, row);
+        result = judge_images(measure, target, color, ids, row);
     if (result == WHIT_OK && measure->request->keep_pictures)
         result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &row->picture);
     drop(measure, color, ids);
@@ -253,7 +255,7 @@ static whit_result find_out(struct measure *measure, const struct settings *targ
     if (result == WHIT_OK)
         result = draw_judged(measure, renderer, &params, ran, &ms);
     if (result == WHIT_OK)
-        result = judge(measure, renderer, row);
+        result = judge(measure, target, renderer, row);
     if (result == WHIT_OK && row->change != SETTING_LIGHT)
         result = measure_hits(measure, renderer, target, row);
     double usual_ms = measure->usual_pixel_ms * params.width * params.height;
@@ -300,7 +302,7 @@ static whit_result find_out_double(struct measure *measure, const struct setting
     double ms = whit_clock_ms() - start_ms;
     whit_reference_destroy(reference);
     if (result == WHIT_OK)
-        result = judge_images(measure, color, ids, row);
+        result = judge_images(measure, target, color, ids, row);
     if (result == WHIT_OK && measure->request->keep_pictures) {
         row->picture = color;
         color = NULL;
@@ -382,7 +384,7 @@ whit_result measure_usual(struct measure *measure, double seconds, struct cost_r
     if (result == WHIT_OK)
         result = draw_judged(measure, measure->renderer, &judged, true, &ms);
     if (result == WHIT_OK)
-        result = judge(measure, measure->renderer, row);
+        result = judge(measure, &measure->usual, measure->renderer, row);
     if (result == WHIT_OK)
         result = measure_hits(measure, measure->renderer, &measure->usual, row);
     if (result == WHIT_OK)

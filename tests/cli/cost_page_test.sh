@@ -23,6 +23,10 @@ check "the sentence" grep -q '<p id="sentence">[A-Z0-9].*\.</p>' "$OUT/dom"
 check "nothing on the console" test "$(wc -l <"$OUT/console")" -eq 0
 check "no request" test "$(wc -l <"$OUT/requests")" -eq 0
 
+sed 's/"option":"[^"]*"/"option":""/g' "$page" >"$OUT/usual.html"
+dom "$OUT/usual.html"
+check "a choice of the usual settings has a name" grep -q 'chosen within [0-9.]* ms' "$OUT/dom"
+
 clipped "$page"
 check "nothing is clipped ($(cat "$OUT/clipped"))" test "$(cat "$OUT/clipped")" = "1280: "
 for wide in "table { width: 130% }" "svg text { font-size: 99px }"; do

@@ -40,6 +40,8 @@ shows "a scene by known clocks" "^usual  " cost "$GLASS" $small --reference-samp
     --markdown "$OUT/files/cost.md" --json "$J" --metric rmse --under 0.03 --within 1e6
 check "what is not here is named" grep -q "^Not here: .*light-samples 1" "$OUT/stdout"
 check "--under is kept" grep -q "^Cheapest with rmse up to 0.03: .*: kept" "$OUT/stdout"
+check "rows of other samples are not held against one sample" jq -e '(.rows | map(select(.knob == "chosen")) | length > 1) and
+    all(.rows[]; (.alone == null) == (.option | contains("--aa")))' "$J"
 P=$OUT/files/page.json
 sed -n 's|^<script id="report" type="application/json">\(.*\)</script>$|\1|p' "$OUT/files/cost.html" >"$P"
 check "the page holds the JSON and pictures of its own" jq -e --slurpfile json "$J" '.page as $page |
