@@ -236,6 +236,10 @@ refuse 2 "no such metric" "flip, rmse" cost "$CUBE" --metric psnr
 refuse 2 "too many scenes" "too many" cost "$CUBE" "$CUBE"
 refuse 2 "one file to compare" "two files" cost --compare "$CUBE"
 refuse 2 "no report" "no report of" cost --compare "$CUBE" "$CUBE"
+cp "$CUBE" "$OUT/scene.json"
+refuse 2 "a report in place of the scene" "SCENE and --json name the same file" \
+    cost "$OUT/scene.json" $small --json "$OUT/scene.json"
+refuse 2 "no file to compare" "$OUT/none: cannot read: No such file" cost --compare "$OUT/none" "$J"
 refuse 2 "JSON to a pipe" "/dev/stdout" cost "$CUBE" --json -
 refuse 2 "a page nowhere" "nowhere/x" cost "$CUBE" --html "$OUT/nowhere/x"
 refuse 2 "one file for two" "the same file" cost "$CUBE" --html "$J" --json "$J"

@@ -54,6 +54,12 @@ refuse 2 "a ray cut short" "cut: 99 bytes .*at byte 96" \
     trace "$CUBE" --input "$OUT/cut" -o "$OUT/files/hits"
 refuse 2 "missing rays" "missing: cannot read" \
     trace "$CUBE" --input "$OUT/missing" -o "$OUT/files/hits"
+ln -s "$R" "$OUT/link"
+refuse 2 "hits in place of the rays" "link: --input and -o name the same file" trace "$CUBE" -i "$R" -o "$OUT/link"
+cp "$CUBE" "$OUT/scene.json"
+refuse 2 "hits in place of the scene" "SCENE and -o name the same file" \
+    trace "$OUT/scene.json" -i "$R" -o "$OUT/scene.json"
+check "both stay" cmp "$CUBE" "$OUT/scene.json"
 refuse 2 "a folder of rays" "cannot read" trace "$CUBE" --input "$OUT" -o "$OUT/files/hits"
 TINY='\001\000\000\000' # 2^-149
 { cat "$R" && printf "$EIGHTH$FOUR$ZERO$ZERO$TINY$MINUS$ZERO$INF"; } >"$OUT/tiny"

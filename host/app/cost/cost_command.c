@@ -84,12 +84,13 @@ static const struct setting options[] = {
 
 static bool check_files(struct cli_reader *reader, const struct cost *cost)
 {
-    enum { FILES = 4 };
-    const struct cli_file files[FILES] = {{"--html", cost->html, true},
+    enum { FILES = 5 };
+    const struct cli_file files[FILES] = {{"SCENE", reader->positional, false},
+                                          {"--html", cost->html, true},
                                           {"--json", cost->json, true},
                                           {"--csv", cost->csv, true},
                                           {"--markdown", cost->markdown, true}};
-    for (int i = 0; i < FILES; ++i) {
+    for (int i = 1; i < FILES; ++i) {
         if (!cli_check_output(reader, files[i].name, files[i].path, "for a pipe give /dev/stdout"))
             return false;
     }

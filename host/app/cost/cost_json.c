@@ -1,4 +1,5 @@
 /* Reports of `whit cost` as JSON, and back. */
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -385,7 +386,9 @@ bool cost_load_json(const char *path, struct cost_report *report, char **scene)
 {
     json_error_t error;
     json_t *root = json_load_file(path, 0, &error);
-    if (!root)
+    if (!root && error.line < 0)
+        cli_error("%s: cannot read: %s", path, strerror(errno));
+    else if (!root)
         cli_error("%s:%d: %s", path, error.line, error.text);
     else if (!read_known(root, report, scene))
         cli_error("%s: this is no report of `whit cost --json`", path);

@@ -172,7 +172,11 @@ static bool check_request(struct cli_reader *reader, const struct trace *trace)
         return cli_misuse(reader, "--input FILE is missing");
     if (!trace->output)
         return cli_misuse(reader, "-o FILE is missing: where should the hits go?");
+    const struct cli_file files[] = {{"SCENE", reader->positional, false},
+                                     {"--input", trace->rays_path, false},
+                                     {"-o", trace->output, true}};
     return cli_no_dash(reader, "--input", trace->rays_path, "for a pipe give /dev/stdin") &&
+           cli_check_apart(reader, files, sizeof files / sizeof *files) &&
            cli_check_output(reader, "-o", trace->output, "for a pipe give /dev/stdout");
 }
 
