@@ -105,6 +105,9 @@ unset WHIT_FAULT
 refuse 3 "a device that is not there" "no Vulkan device" render "$CUBE" -o fails.png --device nobody
 refuse 2 "a scene that fails" "nowhere.json" render nowhere.json -o fails.png
 check "nothing is written then" test ! -e fails.png
+cp a.png sky.png
+refuse 2 "a picture in place of its sky" "-o and --environment name the same file" \
+    render "$CUBE" -o ./sky.png --environment sky.png
 echo old >keep.png
 refuse 2 "a render that fails" "there is no camera" render "$CUBE" -o keep.png --camera nobody
 check "leaves the old file alone" test "$(cat keep.png)" = old

@@ -73,9 +73,11 @@ static bool can_write(const struct render_request *request, const char *name)
     return can;
 }
 
-static bool check_outputs(struct cli_reader *reader, const struct render_request *request)
+static bool check_outputs(struct cli_reader *reader, const struct settings *settings,
+                          const struct render_request *request)
 {
-    const char *distances = request->cameras.distances;
+    const char *sky = settings->environment[0] ? settings->environment : NULL,
+               *distances = request->cameras.distances;
     if (!request->output)
         return cli_misuse(reader, "-o FILE is missing: where should the picture go?");
     if (!cli_no_dash(reader, "-o", request->output,
@@ -91,7 +93,8 @@ static bool check_outputs(struct cli_reader *reader, const struct render_request
         return cli_misuse(reader, "%s: distances are .exr or .pfm", distances);
     const struct cli_file files[] = {{"-o", request->output, true},
                                      {"--ids", request->ids, true},
-                                     {"--distances", distances, true}};
+                                     {"--distances", distances, true},
+                                     {"--environment", sky, false}};
     if (!cli_check_apart(reader, files, sizeof files / sizeof *files))
         return false;
     if (can_write(request, request->output) &&
@@ -574,7 +577,7 @@ bool render_read(struct job *job, struct cli_reader *reader, struct render_reque
     if (!read_all(job, reader, request, argc, argv) || !cameras_check(reader, job, request) ||
         !frames_check(reader, job, request) || !check_choice(reader, &job->settings, request) ||
         !refine_check(reader, job, request) || !part_check(reader, job, request) ||
-        !resume_check(reader, job, request) || !check_outputs(reader, request))
+        !resume_check(reader, job, request) || !check_outputs(reader, &job->settings, request))
         return false;
     if (request->thumbnail) {
         job->settings.picture.width = job->settings.picture.height = request->thumbnail;
