@@ -19,6 +19,7 @@
 #define REF_DONE          0xffffffffu
 #define REF_ONE_PRIMITIVE (1u << BVH_COUNT_SHIFT)
 #define NEAR_SHARE        (1.0f / 524288.0f)
+#define NEAR_MIN          0x1p-144f /* the float that has the bits NEAR_STEPS */
 enum { STACK_SIZE = 512, NEAR_STEPS = 32 };
 
 struct walk {
@@ -74,7 +75,7 @@ static bool enters(const struct walk *walk, float near, float far, float share)
     if (walk->numerics == NUMERICS_EXACT) {
         uint32_t bits;
         memcpy(&bits, &near, sizeof bits);
-        bits = bits > NEAR_STEPS ? bits - NEAR_STEPS : 0;
+        bits -= NEAR_STEPS;
         memcpy(&near, &bits, sizeof near);
     }
     if (walk->numerics == NUMERICS_WATERTIGHT && share != 0.0f) {
@@ -88,11 +89,13 @@ static uint32_t step_siblings(struct walk *walk, const struct ray_setup *ray, fl
                               uint32_t pair, uint32_t base, uint32_t *top)
 {
     const struct gpu_bvh_node *a = &walk->accel->nodes[pair], *b = a + 1;
-    float a_near, a_far, b_near, b_far;
+    float a_near, a_far, b_near, b_far, t_min = walk->t_min;
+    if (walk->numerics == NUMERICS_EXACT && !(t_min > NEAR_MIN))
+        t_min = NEAR_MIN;
     slab_interval(ray, vec3_sub(vec3_load(a->lo), ray->above),
-                  vec3_sub(vec3_load(a->hi), ray->below), walk->t_min, &a_near, &a_far);
+                  vec3_sub(vec3_load(a->hi), ray->below), t_min, &a_near, &a_far);
     slab_interval(ray, vec3_sub(vec3_load(b->lo), ray->above),
-                  vec3_sub(vec3_load(b->hi), ray->below), walk->t_min, &b_near, &b_far);
+                  vec3_sub(vec3_load(b->hi), ray->below), t_min, &b_near, &b_far);
     ++walk->level;
     ++walk->cost.inner_nodes;
     if (walk->level > walk->cost.depth)
@@ -493,7 +496,7 @@ static void begin_walk(struct walk *walk, const struct accel *accel,
     walk->next = false;
     walk->hit_before = -INFINITY;
     walk->t_min = ray->t_min;
-    if (params->numerics == NUMERICS_EXACT && ray->t_min <= 0.0f)
+    if (params->numerics == NUMERICS_EXACT && ray->t_min < 0.0f)
         walk->t_min = 0.0f;
     walk->skip_instance = params->skip_instance;
     walk->skip_primitive = params->skip_primitive;

@@ -411,7 +411,7 @@ void traverse_packets(const uint mode, float t_min, uint root, uint root8, vec3 
         }
         return;
     }
-    if (SPEC_NUMERICS == NUMERICS_EXACT && t_min <= 0.0) // as in traverse()
+    if (SPEC_NUMERICS == NUMERICS_EXACT && t_min < 0.0) // nothing is hit behind the origin
         t_min = 0.0;
     packet_status = 0u;
     packet_height = 0u;

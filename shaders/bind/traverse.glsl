@@ -165,8 +165,10 @@ const int NEAR_STEPS = 32;
 // Whether the ray is in a box from `near` to `far` before it hits what it has hit so far.
 bool enters(float near, float far, float share, Hit hit)
 {
-    if (SPEC_NUMERICS == NUMERICS_EXACT) // where it is at least 0
-        near = intBitsToFloat(max(floatBitsToInt(near) - NEAR_STEPS, 0));
+    if (SPEC_NUMERICS == NUMERICS_EXACT) {
+        int bits = floatBitsToInt(near) - NEAR_STEPS; // at least 0, unless the device flushes
+        near = intBitsToFloat(SPEC_INTERLEAVE != 0u ? bits : max(bits, 0)); // denormals
+    }
     if (SPEC_NUMERICS == NUMERICS_WATERTIGHT && share != 0.0) {
         precise float lower = near - abs(near) * share;
         near = lower;
@@ -197,6 +199,8 @@ uint step_siblings(RaySetup ray, float t_min, float near_share, uint pair, inout
     precise vec3 b_lo = row_vec3(b0) - ray.above;
     precise vec3 b_hi = row_vec3(b1) - ray.below;
     float a_near, a_far, b_near, b_far;
+    if (SPEC_NUMERICS == NUMERICS_EXACT) // for enters()
+        t_min = t_min > intBitsToFloat(NEAR_STEPS) ? t_min : intBitsToFloat(NEAR_STEPS);
     slab_interval(ray, a_lo, a_hi, t_min, a_near, a_far);
     slab_interval(ray, b_lo, b_hi, t_min, b_near, b_far);
     bool hit_a = enters(a_near, a_far, near_share, hit);
@@ -622,8 +626,8 @@ Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, u
         traversal_cost = gpu_cost(1u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
     if (!is_usable(origin, dir))
         root = REF_DONE;
-    if (SPEC_NUMERICS == NUMERICS_EXACT && t_min <= 0.0) // nothing is hit behind the origin, nor is
-        t_min = 0.0;                                     // t -0
+    if (SPEC_NUMERICS == NUMERICS_EXACT && t_min < 0.0) // nothing is hit behind the origin
+        t_min = 0.0;
     if (SPEC_INSTANCED != 0u) {
         traverse_instances(mode, origin, dir, t_min, root, skip_instance, skip_primitive, hit);
     } else {

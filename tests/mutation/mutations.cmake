@@ -284,7 +284,7 @@ mutation(keys_unrounded accel_hard RED cases_are_what_they_say)
 change(host/twin/traverse.c traverse_all [[[a-z]+->lo < [a-z]+->hi]] [[false]])
 
 mutation(boxes_near_denormals hard_tree RED keys_at_the_ends_of_floats_do_not_depend_on_the_tree)
-change(host/twin/traverse.c enters [[bits > NEAR_STEPS \? bits - NEAR_STEPS : 0]] [[bits]])
+change(host/twin/traverse.c enters [[bits -= NEAR_STEPS]] [[bits -= 0]])
 
 mutation(instances_without_slack accel_instance RED rays_from_far_away_enter_what_they_hit)
 change(host/accel/pose.c instances_fill [[spread_max \* WIDENING]] [[0.0]])
