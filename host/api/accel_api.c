@@ -34,11 +34,7 @@ static whit_result check_params(const whit_log *log, const whit_accel_params *pa
                   BVH_LEAF_MAX);
         return WHIT_ERROR_USAGE;
     }
-    if ((unsigned)params->instances > WHIT_INSTANCES_OFF) {
-        log_error(log, "instances %d: auto, on and off are what there is", (int)params->instances);
-        return WHIT_ERROR_USAGE;
-    }
-    return WHIT_OK;
+    return api_check_instances(log, params->instances);
 }
 
 whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params,

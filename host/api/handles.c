@@ -37,6 +37,22 @@ whit_result api_hand_out(const whit_log *log, struct image *made, whit_result re
     return WHIT_ERROR_MEMORY;
 }
 
+whit_result api_check_instances(const whit_log *log, whit_instances instances)
+{
+    if ((unsigned)instances <= WHIT_INSTANCES_OFF)
+        return WHIT_OK;
+    log_error(log, "instances %d: auto, on and off are what there is", (int)instances);
+    return WHIT_ERROR_USAGE;
+}
+
+whit_result api_check_numerics(const whit_log *log, whit_numerics numerics)
+{
+    if ((unsigned)numerics <= WHIT_NUMERICS_EXACT)
+        return WHIT_OK;
+    log_error(log, "there is no level of numerics %d", (int)numerics);
+    return WHIT_ERROR_USAGE;
+}
+
 whit_result api_need_device(const whit_renderer *renderer)
 {
     if (renderer->renderer)

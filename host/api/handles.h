@@ -49,6 +49,10 @@ struct whit_renderer {
     whit_log log;
 };
 
+/* WHIT_ERROR_USAGE, logged, for a value that the enumeration does not have. */
+WHIT_CHECK whit_result api_check_instances(const whit_log *log, whit_instances instances);
+WHIT_CHECK whit_result api_check_numerics(const whit_log *log, whit_numerics numerics);
+
 /* WHIT_ERROR_USAGE, logged, for a renderer that was made without a device. */
 WHIT_CHECK whit_result api_need_device(const whit_renderer *renderer);
 

@@ -54,7 +54,9 @@ whit_result whit_hard_run(whit_device *device, const whit_scene *scene,
     struct traced_on on = {device ? device->device : NULL, params->cancel, params->portable};
     struct hard_device hard_device = {trace, &on, true};
     *out = NULL;
-    whit_result result = find_equal_bits(device, params->portable, &hard_device.equal_bits);
+    whit_result result = api_check_instances(log, params->instances);
+    if (result == WHIT_OK)
+        result = find_equal_bits(device, params->portable, &hard_device.equal_bits);
     if (result != WHIT_OK)
         return result;
     return hard_run(device ? &hard_device : NULL, scene ? scene->scene : NULL,
@@ -80,8 +82,13 @@ whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
         log_error(log, "%u x %u: at most %d on a side", own.width, own.height, SIDE_MAX);
         return WHIT_ERROR_USAGE;
     }
+    whit_result result = api_check_numerics(log, own.numerics);
+    if (result == WHIT_OK)
+        result = api_check_instances(log, own.instances);
+    if (result != WHIT_OK)
+        return result;
     struct image image;
-    whit_result result = image_init(&image, own.width, own.height, 3, false);
+    result = image_init(&image, own.width, own.height, 3, false);
     if (result != WHIT_OK)
         log_error(log, "out of memory");
     if (result == WHIT_OK)

@@ -10,7 +10,7 @@
 #include "hard/topology.h"
 #include "picture/camera.h"
 
-enum { RAYS_DEFAULT = 20000, RAYS_MAX = 1 << 24, SEED = 77 };
+enum { RAYS_DEFAULT = 20000, RAYS_MAX = 1 << 24, SIDE_MAX = 65535, SEED = 77 };
 
 struct whit_judge {
     whit_log log;
@@ -25,15 +25,15 @@ struct whit_judge {
 
 /* ---- Rays ---- */
 
-/* A grid of camera rays with the picture's aspect, and at most about `wanted` points. */
+/* A grid of camera rays with the picture's aspect, as far as at most `wanted` points allow. */
 static void grid_of(const whit_judge_params *params, uint32_t wanted, uint32_t *width,
                     uint32_t *height)
 {
     double shape =
         params->width && params->height ? (double)params->width / params->height : 4. / 3.;
     double across = floor(sqrt(wanted * shape));
-    *width = across < 1.0 ? 1 : (uint32_t)across;
-    *height = wanted / *width ? wanted / *width : 1;
+    *width = (uint32_t)fmin(fmax(across, 1.0), wanted);
+    *height = wanted / *width;
 }
 
 static whit_result camera_rays(whit_judge *judge, const whit_judge_params *params, uint32_t wanted)
@@ -66,16 +66,26 @@ static whit_result make_rays(whit_judge *judge, const whit_judge_params *params,
 
 /* ---- Life ---- */
 
+static whit_result check(const whit_log *log, const whit_judge_params *params)
+{
+    if (params->count > RAYS_MAX) {
+        log_error(log, "%u rays: at most %d", params->count, RAYS_MAX);
+        return WHIT_ERROR_USAGE;
+    }
+    if (params->width > SIDE_MAX || params->height > SIDE_MAX) {
+        log_error(log, "%u x %u: at most %d on a side", params->width, params->height, SIDE_MAX);
+        return WHIT_ERROR_USAGE;
+    }
+    return api_check_instances(log, params->instances);
+}
+
 static whit_result fill(whit_judge *judge, const whit_scene *scene, const whit_judge_params *params)
 {
     uint32_t wanted = params->count ? params->count : RAYS_DEFAULT;
-    if (wanted > RAYS_MAX) {
-        log_error(&judge->log, "%u rays: at most %d", wanted, RAYS_MAX);
-        return WHIT_ERROR_USAGE;
-    }
+    whit_result result = check(&judge->log, params);
     judge->threads = params->threads;
-    if (scene->scene->triangle_total == 0)
-        return WHIT_OK;
+    if (result != WHIT_OK || scene->scene->triangle_total == 0)
+        return result;
     judge->rays = array_alloc(wanted, sizeof *judge->rays);
     judge->plain = array_alloc(wanted, sizeof *judge->plain);
     judge->exact = array_alloc(wanted, sizeof *judge->exact);
@@ -83,8 +93,8 @@ static whit_result fill(whit_judge *judge, const whit_scene *scene, const whit_j
         log_error(&judge->log, "out of memory for %u rays", wanted);
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = hard_scene_borrow(&judge->log, scene->scene, params->time_s,
-                                           api_one_tree(scene, params->instances), &judge->hard);
+    result = hard_scene_borrow(&judge->log, scene->scene, params->time_s,
+                               api_one_tree(scene, params->instances), &judge->hard);
     if (result == WHIT_OK)
         result = hard_topology_init(scene->scene, &judge->topology);
     if (result == WHIT_OK)
@@ -185,9 +195,10 @@ whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics, con
                                              .numerics = (uint32_t)numerics,
                                              .count = judge->count};
     *out = (whit_judgement){.tally = {.rays = judge->count}};
-    if (judge->count == 0)
-        return WHIT_OK;
-    whit_result result = hard_judge(&judgement, judge->threads, &out->tally);
+    whit_result result = api_check_numerics(&judge->log, numerics);
+    if (result != WHIT_OK || judge->count == 0)
+        return result;
+    result = hard_judge(&judgement, judge->threads, &out->tally);
     if (result != WHIT_OK)
         return result;
     return measure_t(judge, hits, out);

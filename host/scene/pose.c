@@ -367,6 +367,10 @@ whit_result scene_pose_init(const struct scene *scene, double time_s, struct sce
         .lo = {INFINITY, INFINITY, INFINITY},
         .hi = {-INFINITY, -INFINITY, -INFINITY},
     };
+    if (!isfinite(time_s)) {
+        log_error(&scene->log, "a time of %g s: it must be finite", time_s);
+        return WHIT_ERROR_USAGE;
+    }
     whit_result result = WHIT_ERROR_MEMORY;
     struct affine *nodes = pose_nodes(scene, time_s);
     pose->instances = array_alloc(scene->instance_count, sizeof *pose->instances);

@@ -92,7 +92,8 @@ typedef struct whit_box {
 /* The nodes at `level`, and the leaves above it, of the tree over instances (`over_instances`) or
    else of every instance's mesh tree, at `time_s`, which must be the time that the accel is posed
    at. At most `max` are given; *boxes is one block for whit_memory_destroy. *total: how many there
-   are in all. WHIT_ERROR_INPUT where the scene has no finite pose at that time. */
+   are in all. WHIT_ERROR_USAGE for a time that is not finite, WHIT_ERROR_INPUT where the scene has
+   no finite pose at that time. */
 WHIT_CHECK whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_instances,
                                         uint32_t level, uint64_t max, whit_box **boxes,
                                         uint64_t *total);

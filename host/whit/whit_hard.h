@@ -88,7 +88,7 @@ WHIT_CHECK whit_result whit_hard_run(whit_device *device, const whit_scene *scen
 void whit_hard_report_destroy(whit_hard_report *report);
 
 typedef struct whit_hard_view_params {
-    uint32_t width, height; /* 0: 640 x 480 */
+    uint32_t width, height; /* up to 32768; 0: 640 x 480 */
     whit_camera camera;
     double time_s;
     bool portable; /* as of whit_renderer_params */
@@ -100,9 +100,9 @@ typedef struct whit_hard_view_params {
    beyond the bounds of the level. Yellow: another primitive than by exact arithmetic, or none,
    within these bounds. Cut-outs count as solid. `scene` NULL: the sphere of the built-in cases.
    `wrong_pixels` and `other_pixels` count red and yellow ones. Other arguments as for
-   whit_hard_run. WHIT_ERROR_USAGE for a size or camera that is not possible, WHIT_ERROR_INPUT and
-   WHIT_ERROR_DEVICE as of whit_accel_create and whit_renderer_create, WHIT_ERROR_STATUS where hits
-   cannot be trusted. */
+   whit_hard_run. WHIT_ERROR_USAGE for params out of range or a camera that is not possible,
+   WHIT_ERROR_INPUT and WHIT_ERROR_DEVICE as of whit_accel_create and whit_renderer_create,
+   WHIT_ERROR_STATUS where hits cannot be trusted. */
 WHIT_CHECK whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
                                       const whit_hard_view_params *params, const whit_log *log,
                                       uint64_t *wrong_pixels, uint64_t *other_pixels,
@@ -117,16 +117,17 @@ WHIT_CHECK whit_result whit_hard_view(whit_device *device, const whit_scene *sce
 typedef struct whit_judge whit_judge;
 typedef struct whit_judge_params {
     bool aimed;     /* aimed rays; false: camera rays */
-    uint32_t count; /* approximate number of rays; 0: 20000. A scene without triangles has no aimed
-                       rays. */
+    uint32_t count; /* about how many rays, and never more, up to 2^24; 0: 20000. A scene without
+                       triangles has no rays. */
     whit_camera camera;
-    uint32_t width, height; /* of the camera's picture, which set its aspect ratio; 0: 640 x 480 */
+    uint32_t width, height; /* of the camera's picture, which set its aspect ratio, up to 65535; 0:
+                               640 x 480 */
     double time_s;
     whit_instances instances; /* must match the trees that the judged hits come from */
     uint32_t threads;         /* 0: one a core */
 } whit_judge_params;
-/* WHIT_ERROR_USAGE for too many rays or a camera that the scene does not have, WHIT_ERROR_INPUT as
-   of whit_accel_create. */
+/* WHIT_ERROR_USAGE for params out of range or a camera that the scene does not have,
+   WHIT_ERROR_INPUT as of whit_accel_create. */
 WHIT_CHECK whit_result whit_judge_create(const whit_scene *scene, const whit_judge_params *params,
                                          const whit_log *log, whit_judge **out);
 void whit_judge_destroy(whit_judge *judge);
@@ -142,7 +143,8 @@ typedef struct whit_judgement {
     double ulp_median, ulp_999, ulp_max; /* ulp_999: the 99.9th percentile */
 } whit_judgement;
 /* `hits`: one for each of the rays, in their order, found at `numerics`. WHIT_ERROR_STATUS where
-   the judge's own traversals cannot be trusted. */
+   the judge's own traversals cannot be trusted, WHIT_ERROR_USAGE for a level that there is none
+   of. */
 WHIT_CHECK whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics,
                                        const whit_hit *hits, whit_judgement *out);
 

@@ -204,8 +204,8 @@ typedef struct whit_triangle {
     float vertices[9];
     uint32_t instance, primitive;
 } whit_triangle;
-/* fn returns false to stop (then the result is WHIT_ERROR_CANCELLED). WHIT_ERROR_INPUT where the
-   scene has no finite pose at that time. */
+/* fn returns false to stop (then the result is WHIT_ERROR_CANCELLED). WHIT_ERROR_USAGE for a time
+   that is not finite, WHIT_ERROR_INPUT where the scene has no finite pose at that time. */
 WHIT_CHECK whit_result whit_scene_triangles(const whit_scene *scene, double time_s,
                                             bool (*fn)(void *user, const whit_triangle *triangle),
                                             void *user);

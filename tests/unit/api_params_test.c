@@ -68,6 +68,87 @@ TEST_IN(values_out_of_range_are_refused, begin, end)
     refuse(device, &params, "the height of the picture is not above 0");
 }
 
+/* The grid of camera rays has as many columns as wanted rays at most, however wide the picture. */
+TEST_IN(judges_of_wide_pictures_have_no_more_rays_than_asked, begin, end)
+{
+    const uint32_t sizes[][3] = {{4096, 16, 100}, {65535, 1, 1}, {1, 65535, 100}, {4, 3, 12}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
+        const whit_judge_params params = {
+            .width = sizes[i][0], .height = sizes[i][1], .count = sizes[i][2]};
+        whit_judge *judge = NULL;
+        uint64_t count;
+        assert_int_equal(whit_judge_create(scene, &params, &warnings_log, &judge), WHIT_OK);
+        whit_judge_rays(judge, &count);
+        assert_int_equal(count, sizes[i][2]);
+        whit_judge_destroy(judge);
+    }
+}
+
+static void refuse_judge(const whit_judge_params *params, const char *reason)
+{
+    whit_judge *judge = NULL;
+    messages = (struct messages){0};
+    assert_int_equal(whit_judge_create(scene, params, &warnings_log, &judge), WHIT_ERROR_USAGE);
+    assert_null(judge);
+    assert_non_null(strstr(messages.last_error, reason));
+}
+
+static void refuse_hard_view(const whit_hard_view_params *params, const char *reason)
+{
+    uint64_t wrong, other;
+    whit_image *image = NULL;
+    messages = (struct messages){0};
+    assert_int_equal(whit_hard_view(NULL, scene, params, &warnings_log, &wrong, &other, &image),
+                     WHIT_ERROR_USAGE);
+    assert_null(image);
+    assert_non_null(strstr(messages.last_error, reason));
+}
+
+TEST_IN(judges_refuse_values_out_of_range, begin, end)
+{
+    const whit_judge_params good = {.count = 12};
+    whit_judge *judge = NULL;
+    whit_judgement judgement;
+    whit_hard_report *report = NULL;
+    refuse_judge(&(whit_judge_params){.width = 70000, .height = 2}, "70000 x 2: at most 65535");
+    refuse_judge(&(whit_judge_params){.time_s = NAN}, "a time of nan s: it must be finite");
+    refuse_judge(&(whit_judge_params){.instances = (whit_instances)9}, "instances 9: auto");
+    assert_int_equal(whit_judge_create(scene, &good, &warnings_log, &judge), WHIT_OK);
+    messages = (struct messages){0};
+    assert_int_equal(whit_judge_hits(judge, (whit_numerics)9, NULL, &judgement), WHIT_ERROR_USAGE);
+    assert_non_null(strstr(messages.last_error, "there is no level of numerics 9"));
+    whit_judge_destroy(judge);
+    refuse_hard_view(&(whit_hard_view_params){.numerics = (whit_numerics)9}, "numerics 9");
+    refuse_hard_view(&(whit_hard_view_params){.instances = (whit_instances)9}, "instances 9");
+    refuse_hard_view(&(whit_hard_view_params){.width = 8, .height = 8, .time_s = NAN},
+                     "a time of nan s");
+    const whit_hard_params run = {.instances = (whit_instances)9};
+    messages = (struct messages){0};
+    assert_int_equal(whit_hard_run(NULL, scene, &run, &warnings_log, &report), WHIT_ERROR_USAGE);
+    assert_non_null(strstr(messages.last_error, "instances 9"));
+}
+
+static bool first_triangle(void *user, const whit_triangle *triangle)
+{
+    (void)triangle;
+    *(bool *)user = true;
+    return false;
+}
+
+TEST_IN(there_is_nothing_at_a_time_that_is_not_finite, begin, end)
+{
+    bool called = false;
+    whit_box *boxes = NULL;
+    uint64_t total;
+    messages = (struct messages){0};
+    assert_int_equal(whit_scene_triangles(scene, NAN, first_triangle, &called), WHIT_ERROR_USAGE);
+    assert_false(called);
+    assert_int_equal(whit_accel_boxes(accel, INFINITY, true, 0, 1, &boxes, &total),
+                     WHIT_ERROR_USAGE);
+    assert_non_null(strstr(messages.text, "a time of nan s: it must be finite\n"));
+    assert_non_null(strstr(messages.text, "a time of inf s: it must be finite\n"));
+}
+
 TEST_IN(no_params_are_the_defaults, begin, end)
 {
     const whit_renderer_params params = small();
