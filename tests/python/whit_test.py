@@ -1,10 +1,12 @@
 """whit.py over the library that was built: pictures and rays against the program's, and what goes wrong."""
 
+import _thread
 import gc
 import logging
 import os
 import struct
 import subprocess
+import threading
 
 import pytest
 import whit
@@ -55,7 +57,7 @@ def test_ids_are_what_rays_hit(renderer):
 
 
 def test_views_of_many_cameras(renderer):
-    cameras = [((3, 2, 4 + i), (0, 0, 0), (0, 1, 0), 35) for i in range(3)] + [0, {"own": True, "eye": (3, 2, 4),
+    cameras = [((3, 2, 4 + i), (0, 0, 0), (0, 1, 0), 35) for i in range(3)] + [0, {"eye": (3, 2, 4),
                "up": (0, 1, 0), "kind": "orthographic", "height": 3.0}]
     color = renderer.render_views(cameras)
     ids, distances = renderer.ids(), renderer.distances()
@@ -75,8 +77,9 @@ def test_memory_of_ones_own(renderer):
     color = renderer.render()
     own = bytearray(color.nbytes)
     assert renderer.render(out=own) is own and own == color.tobytes()
-    for wrong in (bytearray(8), bytes(color.nbytes), memoryview(bytearray(color.nbytes)).cast("d")):
-        with pytest.raises(ValueError, match="4800 numbers of the format 'f'"):
+    turned = memoryview(bytearray(color.nbytes)).cast("f", (40, 30, 4))
+    for wrong in (bytearray(8), bytes(color.nbytes), memoryview(bytearray(color.nbytes)).cast("d"), turned):
+        with pytest.raises(ValueError, match=r"4800 numbers of the format 'f' in the shape \(30, 40, 4\)"):
             renderer.render(out=wrong)
 
 
@@ -90,8 +93,16 @@ def test_rays(renderer):
     twin = whit.Renderer(renderer.scene, whit.CPU)
     assert bytes(twin.trace(rays)) == bytes(hits) == bytes(twin.trace(rays, on="cpu-brute"))
     assert not renderer.trace(rays, any_hit=True)[0].missed
-    with pytest.raises(ValueError, match="8 floats"):
-        renderer.trace(b"123")
+    assert bytes(renderer.trace(memoryview(flat).cast("f", (3, 1, 8)))) == bytes(hits)
+    for wrong in (b"123", memoryview(bytes(96)).cast("f", (4, 2, 3)), memoryview(bytes(96)).cast("f", (4, 6))):
+        with pytest.raises(ValueError, match="8 floats"):
+            renderer.trace(wrong)
+    for wrong in (((0, 5), (0, -1, 0)), ((0, 5, 0), (0, -1, 0, 1))):
+        with pytest.raises(ValueError, match="3 numbers are needed"):
+            renderer.trace([wrong])
+    for device in (0, whit.TraceOn.DEVICE):
+        with pytest.raises(whit.Error, match="without a device"):
+            twin.trace(rays, on=device)
 
 
 def test_numpy(renderer):
@@ -104,11 +115,12 @@ def test_numpy(renderer):
     rays = numpy.array([[0, 9, 0, 0, 0, -1, 0, numpy.inf]] * 3, numpy.float32)
     hits = numpy.asarray(renderer.trace(rays))
     assert hits["t"].shape == (3,) and (hits["instance"] == hits["instance"][0]).all()
+    assert renderer.render_views(numpy.arange(1)).tobytes() == color.tobytes()
     with pytest.raises(ValueError, match="of the format 'f'"):
         renderer.render(out=color.astype(numpy.float64))
 
 
-def test_what_goes_wrong_says_why(tmp_path):
+def test_what_goes_wrong_says_why(renderer, tmp_path):
     with pytest.raises(whit.Error, match="nowhere.stl: there is no such file") as raised:
         whit.Scene("nowhere.stl")
     assert raised.value.result == whit.Result.ERROR_INPUT
@@ -124,8 +136,16 @@ def test_what_goes_wrong_says_why(tmp_path):
         whit.Renderer(scene, numerics="fine")
     with pytest.raises(ValueError, match="width: -1 is out of range"):
         whit.Renderer(scene, width=-1)
-    with pytest.raises(TypeError, match="no parameter 'hight'; there are .*height"):
+    with pytest.raises(TypeError, match="no parameter 'hight'; there are .*height") as raised:
         whit.Renderer(scene, hight=3)
+    assert not {"cancel,", "progress,", "step,", "shader,"} & set(str(raised.value).split())
+    for call in (lambda: whit.Scene(CUBE + "\0.obj"), lambda: whit.Scene(CUBE, allow="/\0"),
+                 lambda: whit.Renderer(scene, camera="0\0"), lambda: whit.Device("0\0"),
+                 lambda: renderer.save(tmp_path / "a.png\0.exr")):
+        with pytest.raises(ValueError, match="has a null character"):
+            call()
+    with pytest.raises(whit.Error, match="/nowhere: cannot be allowed"):
+        whit.Scene(CUBE, allow="/nowhere")
 
 
 def test_warnings_are_logged(tmp_path, caplog):
@@ -145,6 +165,26 @@ def test_progress_can_stop(renderer):
 
     with pytest.raises(Stop):
         whit.Renderer(renderer.scene, progress=progress, tile_size=16, **SMALL).render()
+
+
+def test_an_interrupt_at_the_entry_of_a_callback_ends_the_picture(renderer):
+    shares, returns = [], threading.Semaphore(0)
+    interrupter = threading.Thread(target=lambda: (returns.acquire(), _thread.interrupt_main()))
+    interrupter.start()
+
+    def progress(done):
+        shares.append(done)
+        if len(shares) == 1:
+            returns.release()  # the interrupt comes about when C goes on, and is raised as the next call begins
+        else:
+            interrupter.join()
+
+    drawn = whit.Renderer(renderer.scene, progress=progress, tile_size=16, **SMALL)
+    with pytest.raises(KeyboardInterrupt):
+        drawn.render()
+    stopped = len(shares)
+    drawn.render()
+    assert stopped <= 2 < len(shares) - stopped
 
 
 def test_what_is_borrowed_goes_last(monkeypatch):

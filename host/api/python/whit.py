@@ -22,9 +22,12 @@ import glob
 import logging
 import os
 import re
+import sys
+import threading
 import weakref
 from ctypes import c_bool, c_char, c_char_p, c_double, c_float, c_uint, c_uint8, c_uint32, c_uint64, c_void_p
 from enum import IntEnum
+from numbers import Integral
 
 VERSION = "0.2.0"  # of the library that this file goes with, in its first two numbers
 NONE = 0xFFFFFFFF  # no primitive, no instance: a miss
@@ -239,6 +242,20 @@ def _make(create, destroy, *arguments, hearings, keep):
 # ---- Parameters ----
 
 
+def _text(name, value):
+    """The bytes of a text or path."""
+    text = os.fsencode(value)
+    if b"\0" in text:
+        raise ValueError(f"{name}: {value!r} has a null character")
+    return text
+
+
+def _of_length(name, count, values):
+    if len(values) != count:
+        raise ValueError(f"{name}: {count} numbers are needed")
+    return tuple(values)
+
+
 def _number(name, kind, value):
     if isinstance(kind, type(Result)) and isinstance(value, str):
         words = [word.lower().replace("_", "-") for word in kind.__members__]
@@ -251,21 +268,23 @@ def _number(name, kind, value):
     return value
 
 
+_INNER = (None, c_void_p, _ProgressFn, ctypes.POINTER(c_char_p))  # kinds of members that only this file sets
+
+
 def _fill(params, values):
     """Sets members of `params` by name."""
     for name, value in values.items():
         kind = params.kinds.get(name)
-        if kind in (None, c_void_p, _ProgressFn):
-            raise TypeError(f"there is no parameter {name!r}; there are {', '.join(sorted(params.kinds))}")
+        if kind in _INNER:
+            names = sorted(one for one, its in params.kinds.items() if its not in _INNER)
+            raise TypeError(f"there is no parameter {name!r}; there are {', '.join(names)}")
         if kind is c_char_p:
-            value = os.fsencode(value)
+            value = _text(name, value)
         elif isinstance(kind, type(ctypes.Structure)):
             _fill(getattr(params, name), value)
             continue
         elif isinstance(kind, type(c_uint8 * 3)):
-            if len(value) != kind._length_:
-                raise ValueError(f"{name}: {kind._length_} numbers are needed")
-            value = kind(*(_number(name, kind._type_, one) for one in value))
+            value = kind(*(_number(name, kind._type_, one) for one in _of_length(name, kind._length_, value)))
         else:
             value = _number(name, kind, value)
         setattr(params, name, value)
@@ -276,16 +295,17 @@ def _fill(params, values):
 
 class Scene:
     """A file of a scene or a model. Parameters are those of whit_load_params, of which `background` is a colour of
-    three bytes; `allow`: further folders that may be read. `info` has the members of whit_scene_info."""
+    three bytes; `allow`: a further folder that may be read, or several. `info` has the members of whit_scene_info."""
 
     def __init__(self, path, *, allow=(), **params):
         load = LoadParams()
         _fill(load, params)
         load.has_background = "background" in params
-        load.allowed_folders = (c_char_p * len(allow))(*map(os.fsencode, allow))
+        allow = [allow] if isinstance(allow, (str, bytes, os.PathLike)) else allow
+        load.allowed_folders = (c_char_p * len(allow))(*(_text("allow", folder) for folder in allow))
         load.allowed_count = len(allow)
         self._hearing = _Hearing()
-        self.handle = _make(_library.whit_scene_load, _library.whit_scene_destroy, os.fsencode(path),
+        self.handle = _make(_library.whit_scene_load, _library.whit_scene_destroy, _text("path", path),
                             ctypes.byref(load), ctypes.byref(self._hearing.log), hearings=[self._hearing],
                             keep=self._hearing)
         self.info = SceneInfo()
@@ -306,7 +326,7 @@ class Device:
     of whit_device_info."""
 
     def __init__(self, selector=None, *, validation=False):
-        params = DeviceParams(None if selector is None else str(selector).encode(), validation)
+        params = DeviceParams(None if selector is None else _text("selector", str(selector)), validation)
         self._hearing = _Hearing()
         self.handle = _make(_library.whit_device_create, _library.whit_device_destroy, ctypes.byref(params),
                             ctypes.byref(self._hearing.log), hearings=[self._hearing], keep=self._hearing)
@@ -322,9 +342,10 @@ def _copy(source, count, kind, shape, out):
     memory = bytearray(4 * count) if out is None else out
     view = memoryview(memory)
     if view.readonly or not view.c_contiguous or view.nbytes != 4 * count or \
-            view.format.lstrip("<=@") not in (kind, "B"):
-        raise ValueError(f"out: {count} numbers of the format {kind!r}, side by side and writable, are needed; it has "
-                         f"{view.nbytes} bytes of the format {view.format!r}")
+            view.format.lstrip("<=@") not in (kind, "B") or view.ndim != 1 and view.shape != shape:
+        raise ValueError(f"out: {count} numbers of the format {kind!r} in the shape {shape}, side by side and "
+                         f"writable, are needed; it has {view.nbytes} bytes of the format {view.format!r} in the "
+                         f"shape {view.shape}")
     ctypes.memmove((c_char * view.nbytes).from_buffer(memory), source, view.nbytes)
     return view.cast(kind, shape) if out is None else out
 
@@ -335,8 +356,10 @@ def _rays_of(rays):
         view = memoryview(rays)
     except TypeError:
         rays = [(origin, *(span or (0.0, float("inf"))), direction) for origin, direction, *span in rays]
-        return (Ray * len(rays))(*(Ray(tuple(o), low, tuple(d), high) for o, low, high, d in rays))
-    if not view.c_contiguous or view.nbytes % ctypes.sizeof(Ray) or view.format.lstrip("<=@") not in ("f", "B"):
+        return (Ray * len(rays))(*(Ray(_of_length("origin", 3, o), low, _of_length("dir", 3, d), high)
+                                   for o, low, high, d in rays))
+    if not view.c_contiguous or view.nbytes % ctypes.sizeof(Ray) or view.format.lstrip("<=@") not in ("f", "B") or \
+            view.ndim > 1 and view.shape[-1] * view.itemsize != ctypes.sizeof(Ray):
         raise ValueError("rays: 8 floats of 32 bits each are needed: origin, t_min, direction, t_max")
     return (Ray * (view.nbytes // ctypes.sizeof(Ray))).from_buffer_copy(view.cast("B") if view.nbytes else b"")
 
@@ -351,28 +374,55 @@ class _Progress:
         self.fn = _ProgressFn(self._go_on)
         self._tell = tell
 
+    def _stop(self, raised):
+        self.raised = raised
+        self.cancel.value = True
+
     def _go_on(self, _user, done):
         try:
             if self._tell:
                 self._tell(done)
         except BaseException as raised:  # pylint: disable=broad-except
-            self.raised = raised
-            self.cancel.value = True
+            self._stop(raised)
+
+    def run(self, function, *arguments):
+        """What `function` gives. Python may raise Ctrl+C as a function that C calls begins, before its `try`; then it
+        goes to sys.unraisablehook. It does so in the main thread alone, and no other thread changes the hook here."""
+        self.raised = None
+        self.cancel.value = False
+        main = threading.main_thread()
+        if threading.current_thread() is not main:
+            return function(*arguments)
+        hook = sys.unraisablehook
+
+        def stop(what):
+            if "ctypes callback" in (what.err_msg or "") and threading.current_thread() is main:
+                self._stop(what.exc_value)
+            else:
+                hook(what)
+
+        try:
+            sys.unraisablehook = stop
+            return function(*arguments)
+        finally:
+            sys.unraisablehook = hook
 
 
 def _camera_of(camera):
     """Members of whit_camera: of a name or number, of four values, or as they are."""
-    if camera is None or isinstance(camera, dict):
-        return camera or {}
-    if isinstance(camera, (str, int)):
+    if isinstance(camera, dict):
+        return {"own": bool(camera.keys() - {"name"}), **camera}
+    if camera is None:
+        return {}
+    if isinstance(camera, (str, Integral)):
         return {"name": str(camera)}
     return {"own": True, **dict(zip(("eye", "target", "up", "fov_y_degrees"), camera, strict=True))}
 
 
 class Renderer:
     """Pictures of a scene. `device`: a Device, a selector of one, None, or CPU. `camera`: the name or number of one of
-    the scene's, (eye, target, up, vertical degrees), or a dict of members of whit_camera. `samples` of a pixel. `progress`: called with the share done,
-    0 to 1. Further parameters are those of whit_renderer_params."""
+    the scene's, (eye, target, up, vertical degrees), or a dict of members of whit_camera, whose `own` is true where it
+    has more than a name. `samples` of a pixel. `progress`: called with the share done, 0 to 1. Further parameters are those of whit_renderer_params."""
 
     def __init__(self, scene, device=None, *, camera=None, samples=None, progress=None, **params):
         self.scene = scene
@@ -393,10 +443,8 @@ class Renderer:
                             keep=(accel, on, self._params, self._progress))
 
     def _call(self, function, *arguments):
-        self._progress.raised = None
-        self._progress.cancel.value = False
-        result = function(self.handle, *arguments)
-        if self._progress.raised:
+        result = self._progress.run(function, self.handle, *arguments)
+        if self._progress.raised is not None:
             for hearing in self._hearings:
                 hearing.errors.clear()
             raise self._progress.raised
@@ -448,13 +496,13 @@ class Renderer:
     def save(self, path):
         """Writes the picture that was drawn: .png, .exr or .pfm."""
         self._with_image(Aov.COLOR, lambda image: _check(_library.whit_image_save(
-            image, os.fsencode(path), None, 0, ctypes.byref(self._hearings[-1].log)), *self._hearings))
+            image, _text("path", path), None, 0, ctypes.byref(self._hearings[-1].log)), *self._hearings))
 
     def trace(self, rays, *, any_hit=False, on=None):
         """Hits of rays: Hit * n. `rays`: a sequence of (origin, dir) or (origin, dir, t_min, t_max), or an array of
         n * 8 floats as whit_ray has them. `on`: a word of TraceOn; by itself the device, where there is one."""
         rays = _rays_of(rays)
         hits = (Hit * len(rays))()
-        on = _number("on", TraceOn, on or ("cpu-float" if self.device is CPU else "device"))
+        on = _number("on", TraceOn, on if on is not None else "cpu-float" if self.device is CPU else "device")
         self._call(_library.whit_trace, on, rays, len(rays), any_hit, hits, None)
         return hits
