@@ -60,6 +60,7 @@ struct accel {
     bool no_trees; /* WHIT_BUILD_NONE: a ray that hits a tree's root box tests all its primitives */
     uint32_t iterations; /* with no_trees: the most loop iterations of one ray; at most
                             ACCEL_ITERATIONS_MAX */
+    double posed_s;      /* the time of the present pose; NAN: none, since posing failed */
     double build_ms, instance_build_ms;
     struct accel_bvh8 bvh8;      /* after accel_widen */
     struct accel_posing *posing; /* buffers of accel_pose */

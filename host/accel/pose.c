@@ -325,9 +325,17 @@ whit_result accel_pose(struct accel *accel, const struct scene_pose *pose)
         log_error(&accel->log, "%s: out of memory for %u instances", accel->scene->name, count);
         return WHIT_ERROR_MEMORY;
     }
+    accel->posed_s = NAN;
     whit_result result = accel->flat ? pose_flat(accel, pose) : pose_instances(accel, pose);
+    if (result == WHIT_OK)
+        accel->posed_s = pose->time_s;
     accel->instance_build_ms = clock_ms() - begin_ms;
     return result;
+}
+
+whit_result accel_pose_again(struct accel *accel, const struct scene_pose *pose)
+{
+    return accel->posed_s == pose->time_s ? WHIT_OK : accel_pose(accel, pose);
 }
 
 uint32_t accel_stack_size(const struct accel *accel)

@@ -8,6 +8,9 @@ void accel_posing_destroy(struct accel_posing *posing);
 
 /* Moves the instances: rewrites `instances` and the tree over them, leaves mesh trees alone. */
 WHIT_CHECK whit_result accel_pose(struct accel *accel, const struct scene_pose *pose);
+/* Returns at once where the accel has the pose of that time, else does as accel_pose. Renderers of
+   one accel may be at different times: each calls this before it reads what moves. */
+WHIT_CHECK whit_result accel_pose_again(struct accel *accel, const struct scene_pose *pose);
 /* The most refs that a traversal keeps on its stack, rounded up to a multiple of ACCEL_STACK_STEP.
    The size is a constant of kernels; rounding lets scenes of different depths share kernels, so
    that drivers compile fewer. */

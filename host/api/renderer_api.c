@@ -58,9 +58,12 @@ whit_renderer_params whit_renderer_defaults(void)
                                   .bailout = WHIT_BAILOUT_DEFAULT};
 }
 
+/* Poses the accel, which another renderer may have moved to its own time. */
 static whit_result pose_on_cpu(struct accel *accel, double time_s)
 {
     struct scene_pose pose = {0};
+    if (accel->posed_s == time_s)
+        return WHIT_OK;
     whit_result result = scene_pose_init(accel->scene, time_s, &pose);
     if (result == WHIT_OK)
         result = accel_pose(accel, &pose);
@@ -124,8 +127,11 @@ whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s)
         log_error(&renderer->log, "a time of %g s: it must be finite", time_s);
         return WHIT_ERROR_USAGE;
     }
-    return renderer->renderer ? renderer_set_time(renderer->renderer, time_s)
-                              : pose_on_cpu(renderer->accel, time_s);
+    whit_result result = renderer->renderer ? renderer_set_time(renderer->renderer, time_s)
+                                            : pose_on_cpu(renderer->accel, time_s);
+    if (result == WHIT_OK)
+        renderer->params.time_s = time_s;
+    return result;
 }
 
 /* Stores the parameters of a picture, except those that stay as the renderer was made with (cancel
@@ -359,6 +365,9 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
         log_error(&renderer->log, "more rays than one call takes");
         return WHIT_ERROR_USAGE;
     }
+    whit_result result = pose_on_cpu(renderer->accel, renderer->params.time_s);
+    if (result != WHIT_OK)
+        return result;
     size_t at_least_one = batches ? (size_t)batches : 1;
     trace->statuses = calloc(at_least_one, sizeof *trace->statuses);
     trace->costs = cost ? calloc(at_least_one, sizeof *trace->costs) : NULL;

@@ -258,7 +258,7 @@ whit_result reference_render(const struct reference *r, struct image *color, str
         *ids = (struct image){0};
     struct job job = {.reference = r, .color = color, .ids = ids};
     job.rows = array_alloc_zeroed(band_rows, sizeof *job.rows);
-    whit_result result = job.rows ? WHIT_OK : WHIT_ERROR_MEMORY;
+    whit_result result = job.rows ? accel_pose_again(r->accel, &r->pose) : WHIT_ERROR_MEMORY;
     if (result == WHIT_OK)
         result = image_init(color, params->width, params->height, 4, false);
     if (result == WHIT_OK && ids)
@@ -287,8 +287,11 @@ whit_result reference_ray_tree(const struct reference *r, uint32_t x, uint32_t y
                   y, sample, params->width, params->height, params->sampling.count);
         return WHIT_ERROR_USAGE;
     }
+    whit_result result = accel_pose_again(r->accel, &r->pose);
+    if (result != WHIT_OK)
+        return result;
     tree_trace(&tracer, x, y, &first);
-    whit_result result = tracer_result(r, &tracer);
+    result = tracer_result(r, &tracer);
     if (result == WHIT_OK) {
         *rays = tracer.nodes;
         *count = tracer.node_count;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "accel/pose.h"
 #include "device/buffer.h"
 #include "picture/mipmap.h"
 #include "render/frame_uniform.h"
@@ -16,9 +17,11 @@ whit_result frame_fill(struct renderer *renderer)
     const struct accel *accel = renderer->accel;
     const struct scene_environment *environment = &renderer->scene->environment;
     uint32_t kind;
-    whit_result result =
-        camera_frame(&renderer->log, &renderer->pose, &renderer->params.camera,
-                     renderer->params.width, renderer->params.height, frame, &kind);
+    whit_result result = accel_pose_again(renderer->accel, &renderer->pose);
+    if (result != WHIT_OK)
+        return result;
+    result = camera_frame(&renderer->log, &renderer->pose, &renderer->params.camera,
+                          renderer->params.width, renderer->params.height, frame, &kind);
     if (result != WHIT_OK)
         return result;
     frame->texel_area = (float)(camera_pixel_area(frame, kind) / MIPMAP_PIXEL_TEXELS);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "accel/pose.h"
 #include "base/array.h"
 #include "device/buffer.h"
 #include "render/material_shares.h"
@@ -88,8 +89,10 @@ whit_result material_shares_add(struct target *target, const struct gpu_generati
         *counts = array_alloc_zeroed((size_t)material_count * CLASSES_MAX, sizeof **counts);
     if (!*counts)
         return render_no_memory(renderer, "shares of materials");
-    struct tile_hits hits;
-    whit_result result = read_tile(target, generations, generation_count, camera_rays, &hits);
+    struct tile_hits hits = {0};
+    whit_result result = accel_pose_again(renderer->accel, &renderer->pose);
+    if (result == WHIT_OK)
+        result = read_tile(target, generations, generation_count, camera_rays, &hits);
     for (uint32_t g = 0; result == WHIT_OK && g < generation_count; ++g) {
         for (uint32_t k = 0; k < target->stages.set.classes; ++k) {
             const struct gpu_items *items = &generations[g].lists[LIST_HITS + k];

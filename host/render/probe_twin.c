@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "accel/material_bits.h"
+#include "accel/pose.h"
 #include "oracle/rational.h"
 #include "render/probe.h"
 #include "render/renderer.h"
@@ -168,7 +169,11 @@ static void ask_exactly(struct asking *a)
 
 whit_result probe_ask_twin(const struct renderer *renderer, struct probe_report *report)
 {
-    struct asking a = {.renderer = renderer, .rational = rational_create(renderer->accel)};
+    struct asking a = {.renderer = renderer};
+    whit_result result = accel_pose_again(renderer->accel, &renderer->pose);
+    if (result != WHIT_OK)
+        return result;
+    a.rational = rational_create(renderer->accel);
     if (!a.rational)
         return render_no_memory(renderer, "exact arithmetic");
     for (uint32_t i = 0; i < report->ray_count; ++i) {

@@ -8,6 +8,7 @@
 
 #include <stdlib.h>
 
+#include "accel/pose.h"
 #include "base/array.h"
 #include "base/clock.h"
 #include "device/buffer.h"
@@ -138,7 +139,7 @@ static whit_result trace_piece(struct renderer *renderer, bool any, bool *beams,
     *beams = *beams && accel->instance_count > 0 && renderer->trace.beams[any].pipeline;
     if (!*beams)
         return dispatch(renderer, any, false, &batch);
-    batch.root8 = accel->instances[0].root8;
+    batch.root8 = accel->bvh8.mesh_roots[accel->flat ? 0 : renderer->scene->instances[0].mesh];
     whit_result result = dispatch(renderer, any, true, &batch);
     struct gpu_work alone;
     if (result == WHIT_OK)
@@ -175,7 +176,9 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
     renderer->trace.together = 0;
     bool many = count >= TRACE_BEAMS_MIN || renderer->params.packets == WHIT_PACKETS_ON;
     bool beams = many && variant_has_beams(renderer);
-    whit_result result = prepare(renderer, any, beams);
+    whit_result result = accel_pose_again(renderer->accel, &renderer->pose);
+    if (result == WHIT_OK)
+        result = prepare(renderer, any, beams);
     if (result == WHIT_OK)
         result = deferred_clear(&renderer->picture);
     uint64_t piece = first_piece(renderer);

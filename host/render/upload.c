@@ -107,7 +107,9 @@ whit_result upload_widen(struct renderer *renderer)
 {
     if (!renderer->wide)
         return WHIT_OK;
-    whit_result result = accel_widen(renderer->accel);
+    whit_result result = accel_pose_again(renderer->accel, &renderer->pose);
+    if (result == WHIT_OK)
+        result = accel_widen(renderer->accel);
     uint32_t stack_size = accel_packet_stack_size(renderer->accel);
     if (stack_size > renderer->packet_stack_size)
         renderer->packet_stack_size = stack_size;

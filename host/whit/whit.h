@@ -11,8 +11,10 @@
    call or a handle has one), and the result says which kind it was. Each function names the results
    that it may give beside WHIT_OK and WHIT_ERROR_MEMORY, which any of them may.
 
-   Threads: different handles may be used from different threads; one handle from one at a time. A
-   `cancel` flag may be set from anywhere, a signal handler included. */
+   Threads: different handles may be used from different threads; one handle from one at a time. An
+   accel and all renderers and references made from it count as one handle, for its trees stand at
+   one time of the animation and are moved to that of the renderer that needs them. A `cancel` flag
+   may be set from anywhere, a signal handler included. */
 #ifndef WHIT_H
 #define WHIT_H
 

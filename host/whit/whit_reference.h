@@ -12,8 +12,8 @@ extern "C" {
    device is judged by its difference from this one. See host/reference/reference.h. */
 typedef struct whit_reference whit_reference;
 
-/* `accel` is borrowed until whit_reference_destroy and is posed at params->time_s, so no renderer
-   may use it meanwhile. Of `params` it obeys size, camera, time, samples, depth, bailout, shadows,
+/* `accel` is borrowed until whit_reference_destroy, and posed at params->time_s where it is not, as
+   by renderers. Of `params` it obeys size, camera, time, samples, depth, bailout, shadows,
    Fresnel, area lights, cancel, progress and time_limit_s (per whit_reference_render).
    WHIT_ERROR_USAGE for adaptive samples, removed effects, a shader and params that a renderer
    refuses; WHIT_ERROR_INPUT and WHIT_ERROR_STATUS as of whit_renderer_create. `threads`: 0: one per

@@ -169,6 +169,9 @@ typedef struct whit_renderer_params {
 whit_renderer_params whit_renderer_defaults(void);
 
 /* `device` may be NULL: then only whit_trace on the CPU works, and the camera is not looked for.
+   Renderers of one accel may be at different times. The accel then is posed anew, as by
+   whit_renderer_set_time, whenever another renderer than before traces on the CPU, probes or is set
+   to a view.
    WHIT_ERROR_USAGE for params out of range, a camera that does not exist, or a scene whose pictures
    were dropped; WHIT_ERROR_INPUT for
    a scene that has no finite pose at that time; WHIT_ERROR_STATUS for a camera in too many media;
