@@ -143,7 +143,7 @@ whit_result image_subtract(const whit_log *log, const struct image *a, const str
     *out = (struct image){0};
     if (!same_kind(a, b) || !a->pixels)
         return refuse(log, a, b);
-    whit_result result = image_init(out, a->width, a->height, 3, false);
+    whit_result result = image_init_logged(log, out, a->width, a->height, 3, false);
     if (result != WHIT_OK)
         return result;
     size_t count = (size_t)a->width * a->height;

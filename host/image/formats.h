@@ -47,6 +47,10 @@ WHIT_CHECK whit_result image_decode_texts(const struct image_source *source,
 WHIT_CHECK whit_result image_check_savable(const whit_log *log, const struct image *image,
                                            const char *path);
 
+/* Checks that files of all formats keep the keys of these texts as they are; logs errors. */
+WHIT_CHECK whit_result image_check_texts(const whit_log *log, const char *path,
+                                         const whit_text *texts, uint32_t count);
+
 /* False when memory runs out. */
 bool text_list_add(struct text_list *list, const char *key, const char *value);
 void text_list_finish(struct text_list *list);

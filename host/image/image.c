@@ -9,6 +9,8 @@
 #include "base/file.h"
 #include "image/formats.h"
 
+enum { KEY_MAX = 79, LAYER_NAME_MAX = 200 };
+
 enum format { FORMAT_UNKNOWN, FORMAT_PNG, FORMAT_EXR, FORMAT_PFM, FORMAT_HDR };
 
 whit_result image_init(struct image *image, uint32_t width, uint32_t height, uint32_t channels,
@@ -31,6 +33,15 @@ whit_result image_init(struct image *image, uint32_t width, uint32_t height, uin
     else
         image->pixels = memory;
     return WHIT_OK;
+}
+
+whit_result image_init_logged(const whit_log *log, struct image *image, uint32_t width,
+                              uint32_t height, uint32_t channels, bool integers)
+{
+    whit_result result = image_init(image, width, height, channels, integers);
+    if (result == WHIT_ERROR_MEMORY)
+        log_error(log, "out of memory for %u x %u pixels", width, height);
+    return result;
 }
 
 void image_finish(struct image *image)
@@ -144,10 +155,30 @@ static void warn_of_nonfinite(const whit_log *log, const struct image *image, co
                     format_of_path(path) == FORMAT_PNG ? " and shown as magenta" : "");
 }
 
+static bool is_new_layer(const struct image_layer *layers, uint32_t index)
+{
+    for (uint32_t i = 0; i < index; ++i) {
+        if (strcmp(layers[i].name, layers[index].name) == 0)
+            return false;
+    }
+    return true;
+}
+
 static whit_result check_layers(const whit_log *log, const struct image *image,
                                 const struct image_layer *layers, uint32_t count, const char *path)
 {
     bool fit = count <= IMAGE_LAYERS_MAX && (count == 0 || format_of_path(path) == FORMAT_EXR);
+    for (uint32_t i = 0; fit && i < count; ++i) {
+        const char *name = layers[i].name;
+        size_t length = strcspn(name, "."); /* a dot stands before the channel */
+        if (length == 0 || length > LAYER_NAME_MAX || name[length] || !is_new_layer(layers, i)) {
+            log_error(log,
+                      "%s: a layer `%s`: names have 1 to %d bytes and no dots, and differ from one "
+                      "another",
+                      path, name, LAYER_NAME_MAX);
+            return WHIT_ERROR_USAGE;
+        }
+    }
     for (uint32_t i = 0; fit && i < count; ++i) {
         const struct image *layer = layers[i].image;
         fit = layer->pixels && layer->channels == 4 && layer->width == image->width &&
@@ -160,6 +191,34 @@ static whit_result check_layers(const whit_log *log, const struct image *image,
     return WHIT_ERROR_USAGE;
 }
 
+/* The keywords of PNG: Latin-1 without spaces that its readers drop. */
+static bool is_key(const char *key)
+{
+    size_t length = strlen(key);
+    bool good = length > 0 && length <= KEY_MAX && key[0] != ' ' && key[length - 1] != ' ';
+    for (const unsigned char *c = (const unsigned char *)key; good && *c; ++c)
+        good = *c >= ' ' && (*c < 127 || *c > 160) && (*c != ' ' || c[1] != ' ');
+    return good;
+}
+
+whit_result image_check_texts(const whit_log *log, const char *path, const whit_text *texts,
+                              uint32_t count)
+{
+    for (uint32_t i = 0; texts && i < count; ++i) {
+        bool good = is_key(texts[i].key);
+        for (uint32_t k = 0; good && k < i; ++k)
+            good = strcmp(texts[k].key, texts[i].key) != 0;
+        if (good)
+            continue;
+        log_error(log,
+                  "%s: a text `%s`: keys have 1 to %d printable characters, no spaces at their "
+                  "ends or side by side, and differ from one another",
+                  path, texts[i].key, KEY_MAX);
+        return WHIT_ERROR_USAGE;
+    }
+    return WHIT_OK;
+}
+
 whit_result image_save(const whit_log *log, const struct image *image,
                        const struct image_layer *layers, uint32_t layer_count, const char *path,
                        const whit_text *texts, uint32_t text_count)
@@ -167,6 +226,8 @@ whit_result image_save(const whit_log *log, const struct image *image,
     whit_result result = image_check_savable(log, image, path);
     if (result == WHIT_OK)
         result = check_layers(log, image, layers, layer_count, path);
+    if (result == WHIT_OK)
+        result = image_check_texts(log, path, texts, text_count);
     if (result != WHIT_OK)
         return result;
     warn_of_nonfinite(log, image, path);
@@ -206,6 +267,8 @@ whit_result image_encode_png(const whit_log *log, const struct image *image, con
     *data = NULL;
     *size_bytes = 0;
     whit_result result = image_check_savable(log, image, name);
+    if (result == WHIT_OK)
+        result = image_check_texts(log, name, texts, text_count);
     if (result != WHIT_OK)
         return result;
     struct image_target target = {.log = log,

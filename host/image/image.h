@@ -26,6 +26,9 @@ struct image {
 /* Makes an image with zeroed pixels. WHIT_ERROR_MEMORY, also for sizes whose product overflows. */
 WHIT_CHECK whit_result image_init(struct image *image, uint32_t width, uint32_t height,
                                   uint32_t channels, bool integers);
+/* image_init, which logs where there is no memory. */
+WHIT_CHECK whit_result image_init_logged(const whit_log *log, struct image *image, uint32_t width,
+                                         uint32_t height, uint32_t channels, bool integers);
 void image_finish(struct image *image);
 
 /* An additional image of 4 floats for an .exr, of the size of the main image, stored as channels

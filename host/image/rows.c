@@ -46,6 +46,8 @@ whit_result image_rows_begin(const whit_log *log, const char *path, const struct
 {
     *out = NULL;
     whit_result result = image_check_savable(log, shape, path);
+    if (result == WHIT_OK)
+        result = image_check_texts(log, path, texts, text_count);
     struct image_rows *rows = result == WHIT_OK ? calloc(1, sizeof *rows) : NULL;
     if (result == WHIT_OK && !rows) {
         log_error(log, "%s: out of memory", path);

@@ -24,8 +24,9 @@ typedef struct whit_text {
     const char *key, *value;
 } whit_text;
 /* .png (8-bit sRGB), .exr and .pfm (float); integers only .exr. Atomic. `texts` (the recipe) is
-   stored in the file. WHIT_ERROR_USAGE for a format that cannot hold the image, WHIT_ERROR_OUTPUT
-   where the file cannot be written. */
+   stored in .png and .exr. Their keys differ, and have 1 to 79 printable characters, and no spaces
+   at their ends or side by side. WHIT_ERROR_USAGE for a format that cannot hold the image and for
+   other keys, WHIT_ERROR_OUTPUT where the file cannot be written. */
 WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path,
                                        const whit_text *texts, uint32_t text_count,
                                        const whit_log *log);
@@ -34,7 +35,8 @@ typedef struct whit_image_layer {
     const whit_image *image;
 } whit_image_layer;
 /* As whit_image_save, for an .exr, with further images of 4 floats and the same size as channels
-   NAME.R, .G, .B and .A. WHIT_ERROR_USAGE too for other formats, and for more than 16 layers. */
+   NAME.R, .G, .B and .A. Their names differ, and have 1 to 200 bytes and no dots. WHIT_ERROR_USAGE
+   too for other formats, other names, and for more than 16 layers. */
 WHIT_CHECK whit_result whit_image_save_layers(const whit_image *image,
                                               const whit_image_layer *layers, uint32_t layer_count,
                                               const char *path, const whit_text *texts,

@@ -8,6 +8,7 @@
 #include "../wrapped.h"
 #include "image/formats.h"
 #include "image/image_reply.h"
+#include "image/rows.h"
 
 static const whit_text recipe[] = {{"scene", "scenes/default.json"},
                                    {"options", "--aa 4 --depth 8"},
@@ -167,7 +168,7 @@ TEST_IN(recipe_comes_back, folder_begin, folder_end)
 TEST_IN(refusals_leave_nothing_behind, folder_begin, folder_end)
 {
     own_image floats = fixture_floats(4, 4, 3), words = fixture_words(4, 4, 2), none = {0};
-    const whit_text empty = {"", "value"}; /* refused half-way */
+    const whit_text other = {"compression", "value"}; /* refused half-way */
     const struct {
         const char *name;
         const struct image *image;
@@ -182,7 +183,7 @@ TEST_IN(refusals_leave_nothing_behind, folder_begin, folder_end)
     for (int i = 0; i < 5; ++i) {
         whit_result result =
             image_save(&warnings_log, cases[i].image, NULL, 0, in_folder(cases[i].name),
-                       cases[i].texts ? &empty : NULL, cases[i].texts);
+                       cases[i].texts ? &other : NULL, cases[i].texts);
         if (result != cases[i].result || messages.errors != i + 1 ||
             !strstr(messages.last, cases[i].says))
             fail_msg("case %d, %s: %d, %s", i, cases[i].name, (int)result, messages.last);
@@ -191,6 +192,47 @@ TEST_IN(refusals_leave_nothing_behind, folder_begin, folder_end)
     assert_int_equal(mkdir(folder, 0700), 0);
     assert_true(image_format_known("x.PNG", false) && image_format_known("x.exr", true));
     assert_false(image_format_known("x.png", true) || image_format_known("exr", false));
+}
+
+/* What a key would lose in a file of one format is refused for all of them. */
+TEST_IN(keys_that_a_file_would_change_are_refused, folder_begin, folder_end)
+{
+    static const char long_key[] =
+        "keys of 80 bytes, where the keywords of a PNG have 79 of them at "
+        "most: .........";
+    const whit_text wrong[][2] = {
+        {{"", "1"}},       {{" key", "1"}},   {{"key ", "1"}},     {{"a  key", "1"}},
+        {{"a\nkey", "1"}}, {{long_key, "1"}}, {{"\xc2\x80", "1"}}, {{"key", "1"}, {"key", "2"}}};
+    const char *const names[] = {"a.png", "a.exr", "a.pfm"};
+    own_image image = fixture_floats(4, 4, 4);
+    uint8_t *data = NULL;
+    size_t size_bytes;
+    assert_int_equal(strlen(long_key), 80);
+    for (int i = 0; i < 8 * 3; ++i) {
+        struct image_rows *rows = NULL;
+        char *path = in_folder(names[i % 3]);
+        uint32_t count = i / 3 == 7 ? 2 : 1;
+        messages = (struct messages){0};
+        assert_int_equal(image_save(&warnings_log, &image, NULL, 0, path, wrong[i / 3], count),
+                         WHIT_ERROR_USAGE);
+        assert_int_equal(image_rows_begin(&warnings_log, path, &image, wrong[i / 3], count, &rows),
+                         WHIT_ERROR_USAGE);
+        assert_int_equal(
+            image_encode_png(&warnings_log, &image, wrong[i / 3], count, &data, &size_bytes),
+            WHIT_ERROR_USAGE);
+        assert_int_equal(messages.errors, 3);
+        assert_non_null(strstr(messages.last_error, "keys have 1 to 79 printable characters"));
+    }
+    assert_int_equal(rmdir(folder), 0);
+    assert_int_equal(mkdir(folder, 0700), 0);
+    const whit_text long_text = {long_key + 1, "value"};
+    own_memory whit_text *texts = NULL;
+    uint32_t count;
+    assert_int_equal(image_save(&warnings_log, &image, NULL, 0, in_folder("a.png"), &long_text, 1),
+                     WHIT_OK);
+    assert_int_equal(image_load_texts(&warnings_log, in_folder("a.png"), NULL, &texts, &count),
+                     WHIT_OK);
+    assert_true(count == 1 && strcmp(texts[0].key, long_text.key) == 0);
 }
 
 /* Writes a PNG with libpng, with a compressible text of `text_bytes`, unless that is 0. */
@@ -385,6 +427,13 @@ TEST_IN(exr_keeps_layers_beside_the_colour, folder_begin, folder_end)
     assert_int_equal(image_save(&warnings_log, &color, layers, 3, path, NULL, 0), WHIT_ERROR_USAGE);
     assert_int_equal(image_save(&warnings_log, &color, layers, 2, in_folder("a.png"), NULL, 0),
                      WHIT_ERROR_USAGE);
+    const char *const wrong[] = {"a", "", "a.b"};
+    for (int i = 0; i < 3; ++i) {
+        const struct image_layer two[] = {{"a", &other}, {wrong[i], &third}};
+        assert_int_equal(image_save(&warnings_log, &color, two, 2, path, NULL, 0),
+                         WHIT_ERROR_USAGE);
+        assert_non_null(strstr(messages.last_error, "names have 1 to 200 bytes and no dots"));
+    }
     struct image *all[] = {&color, &other, &third, &small, &loaded};
     for (int i = 0; i < 5; ++i)
         image_finish(all[i]);
