@@ -71,6 +71,9 @@ void whit_image_display_bytes(const whit_image *image, uint8_t *rgba)
 
 void whit_image_display_as(whit_image *image, const whit_renderer_params *params)
 {
+    const whit_renderer_params defaults = whit_renderer_defaults();
+    if (!params)
+        params = &defaults;
     image->image.display_scale = (float)same_pow(2.0, params->exposure_ev);
     image->image.display_soft = params->soft_highlights;
 }
@@ -166,7 +169,8 @@ whit_result whit_image_load_texts(const char *path, const whit_load_params *para
                                   const whit_log *log, whit_text **texts, uint32_t *text_count)
 {
     const struct foreign_params foreign = load_foreign(params);
-    return image_load_texts(log, path, &foreign, texts, text_count);
+    whit_result result = load_check(log, path, params);
+    return result == WHIT_OK ? image_load_texts(log, path, &foreign, texts, text_count) : result;
 }
 
 whit_result whit_image_load(const char *path, const whit_load_params *params, const whit_log *log,
@@ -174,12 +178,15 @@ whit_result whit_image_load(const char *path, const whit_load_params *params, co
 {
     const struct foreign_params foreign = load_foreign(params);
     *out = NULL;
+    whit_result result = load_check(log, path, params);
+    if (result != WHIT_OK)
+        return result;
     whit_image *image = calloc(1, sizeof *image);
     if (!image) {
         log_error(log, "%s: out of memory", path);
         return WHIT_ERROR_MEMORY;
     }
-    whit_result result = image_load(log, NULL, path, &foreign, &image->image);
+    result = image_load(log, NULL, path, &foreign, &image->image);
     if (result != WHIT_OK) {
         whit_image_destroy(image);
         return result;

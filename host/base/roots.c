@@ -276,10 +276,11 @@ whit_result roots_allow(const whit_log *log, struct roots *roots, const char *fo
 {
     struct stat info;
     whit_result result = WHIT_ERROR_INPUT;
-    if (stat(folder, &info) == 0 && !S_ISDIR(info.st_mode))
+    if (stat(folder, &info) == 0) { /* a folder "" is none, not the current one */
         errno = ENOTDIR;
-    else
-        result = add_folder(roots, folder);
+        if (S_ISDIR(info.st_mode))
+            result = add_folder(roots, folder);
+    }
     if (result != WHIT_OK)
         log_error(log, "%s: cannot be allowed: %s", folder, strerror(errno));
     return result;

@@ -138,14 +138,24 @@ static whit_result name_input(const whit_log *log, char name[INPUT_NAME_BYTES])
     return extension ? WHIT_OK : WHIT_ERROR_INPUT;
 }
 
-static whit_result load_named(const whit_log *log, const char *path, bool piped,
-                              const whit_load_params *params, struct scene **out)
+whit_result load_check(const whit_log *log, const char *path, const whit_load_params *params)
 {
-    if (params &&
-        ((uint32_t)params->up > WHIT_UP_AUTO || (uint32_t)params->lights > WHIT_LIGHTS_KEY)) {
+    if (!params)
+        return WHIT_OK;
+    if ((uint32_t)params->up > WHIT_UP_AUTO || (uint32_t)params->lights > WHIT_LIGHTS_KEY) {
         log_error(log, "%s: up or lights: a value of an enumeration that there is none of", path);
         return WHIT_ERROR_USAGE;
     }
+    if (params->import_limit_s >= 0.0 && params->time_limit_s >= 0.0)
+        return WHIT_OK;
+    log_error(log, "%s: limits of %g s and %g s for importers: must not be below 0", path,
+              params->import_limit_s, params->time_limit_s);
+    return WHIT_ERROR_USAGE;
+}
+
+static whit_result load_named(const whit_log *log, const char *path, bool piped,
+                              const whit_load_params *params, struct scene **out)
+{
     struct scene *scene = scene_create(log, path);
     if (!scene) {
         log_error(log, "%s: out of memory", path);
@@ -188,6 +198,8 @@ whit_result load_scene(const whit_log *log, const char *path, const whit_load_pa
     char name[INPUT_NAME_BYTES];
     bool piped = is_input(path);
     *out = NULL;
-    whit_result result = piped ? name_input(log, name) : check_path(log, path);
+    whit_result result = load_check(log, path, params);
+    if (result == WHIT_OK)
+        result = piped ? name_input(log, name) : check_path(log, path);
     return result == WHIT_OK ? load_named(log, piped ? name : path, piped, params, out) : result;
 }

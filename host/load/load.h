@@ -23,6 +23,10 @@ static inline struct foreign_params load_foreign(const whit_load_params *params)
     return foreign;
 }
 
+/* WHIT_ERROR_USAGE, logged after `path`, for params out of range; they may be NULL. */
+WHIT_CHECK whit_result load_check(const whit_log *log, const char *path,
+                                  const whit_load_params *params);
+
 #define LOAD_MODELS ".obj .gltf .glb .ply .stl .fbx .dae .3mf .off"
 
 /* Reads any supported file into a frozen scene: a .json scene file, or a model with an extension of

@@ -38,8 +38,8 @@ typedef struct whit_load_params {
     bool has_background;
     uint8_t background[3];
     /* For each importer and decoder of pictures that is not whit's own: */
-    double import_limit_s; /* processor time; 0: 8, plus 4 per 10 MB, at most 60 */
-    double time_limit_s;   /* wall clock; 0: ten times import_limit_s */
+    double import_limit_s; /* processor time, not below 0; 0: 8, plus 4 per 10 MB, at most 60 */
+    double time_limit_s;   /* wall clock, not below 0; 0: ten times import_limit_s */
     bool require_sandbox;  /* WHIT_ERROR_USAGE where importers cannot be run in a sandbox; false:
                               only a warning */
     /* Limit on the memory for the scene on host and device together, estimated before it is
@@ -61,7 +61,8 @@ typedef struct whit_load_params {
    input, of at most 256 MiB: it is read once and kept for further calls. Its first bytes tell its
    format; files that it refers to are searched only in `allowed_folders`. WHIT_ERROR_INPUT for a
    file that is missing, damaged or refused, or takes more memory than params allow;
-   WHIT_ERROR_USAGE where `require_sandbox` is set and there is no sandbox; WHIT_ERROR_CANCELLED. */
+   WHIT_ERROR_USAGE for params out of range, and where `require_sandbox` is set and there is no
+   sandbox; WHIT_ERROR_CANCELLED. */
 WHIT_CHECK whit_result whit_scene_load(const char *path, const whit_load_params *params,
                                        const whit_log *log, whit_scene **out);
 /* A small built-in scene, without a file, whose picture has rays of every kind.

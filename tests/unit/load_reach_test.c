@@ -386,6 +386,8 @@ TEST_IN(a_folder_that_is_not_there_cannot_be_allowed, begin, end)
     print_path(file, "%s/secret.bin", outside);
     load(path, file, &out);
     assert_non_null(strstr(out.text, "cannot be allowed: Not a directory"));
+    load(path, "", &out);
+    assert_non_null(strstr(out.text, ": cannot be allowed: No such file"));
 }
 
 /* The folder is replaced by a link after the first, second, ... time that its path is resolved, and
