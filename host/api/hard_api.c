@@ -88,9 +88,7 @@ whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
     if (result != WHIT_OK)
         return result;
     struct image image;
-    result = image_init(&image, own.width, own.height, 3, false);
-    if (result != WHIT_OK)
-        log_error(log, "out of memory");
+    result = image_init_logged(log, &image, own.width, own.height, 3, false);
     if (result == WHIT_OK)
         result = hard_view(device ? &hard_device : NULL, scene ? scene->scene : NULL,
                            scene && api_one_tree(scene, own.instances), &own, log, image.pixels,

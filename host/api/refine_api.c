@@ -146,7 +146,8 @@ static whit_result begin(whit_refine *refine, uint32_t samples, struct part *par
     struct image *color = &part->color;
     whit_result result = estimate_init(&refine->estimate, color->width, color->height);
     if (result == WHIT_OK)
-        result = image_init(&refine->errors, color->width, color->height, 1, false);
+        result =
+            image_init_logged(&refine->log, &refine->errors, color->width, color->height, 1, false);
     if (result != WHIT_OK) {
         estimate_finish(&refine->estimate);
         return result;
@@ -168,9 +169,11 @@ whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float
         return WHIT_ERROR_USAGE;
     }
     size_t pixels = (size_t)params->width * params->height;
-    whit_result result = image_init(&part.color, params->width, params->height, 4, false);
+    whit_result result =
+        image_init_logged(&refine->log, &part.color, params->width, params->height, 4, false);
     if (result == WHIT_OK)
-        result = image_init(&part.cuts, params->width, params->height, 2, false);
+        result =
+            image_init_logged(&refine->log, &part.cuts, params->width, params->height, 2, false);
     if (result == WHIT_OK) {
         memcpy(part.color.pixels, color, pixels * 4 * sizeof *color);
         memcpy(part.cuts.pixels, cuts, pixels * 2 * sizeof *cuts);

@@ -276,7 +276,7 @@ static whit_result add_costs(const whit_renderer *renderer, whit_view view, uint
     bool largest = view == WHIT_VIEW_DEPTH || view == WHIT_VIEW_STACK;
     whit_result result = renderer_read_costs(renderer->renderer, kind, &costs);
     if (result == WHIT_OK && !values->pixels)
-        result = image_init(values, costs.width, costs.height, 1, false);
+        result = image_init_logged(&renderer->log, values, costs.width, costs.height, 1, false);
     size_t pixel_count = (size_t)costs.width * costs.height;
     for (size_t i = 0; result == WHIT_OK && i < pixel_count; ++i) {
         struct gpu_cost cost;
@@ -493,6 +493,11 @@ whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray
 {
     const void *from = rays;
     void *to = hits;
+    if ((unsigned)on > WHIT_TRACE_CPU_BRUTE) {
+        log_error(&renderer->log, "rays are traced on the device or on the CPU, not on %d",
+                  (int)on);
+        return WHIT_ERROR_USAGE;
+    }
     if (on == WHIT_TRACE_DEVICE) {
         whit_result result = api_need_device(renderer);
         return result == WHIT_OK ? trace_on_device(renderer, from, count, any, to, cost) : result;

@@ -2,6 +2,7 @@
    are made of. */
 #include "picture/camera.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +15,12 @@ static void subtract(const double a[3], const double b[3], double out[3])
 {
     for (int i = 0; i < 3; ++i)
         out[i] = a[i] - b[i];
+}
+
+static bool fits_floats(const double v[3])
+{
+    return fabs(v[0]) <= (double)FLT_MAX && fabs(v[1]) <= (double)FLT_MAX &&
+           fabs(v[2]) <= (double)FLT_MAX;
 }
 
 /* False for the zero vector and for one that is not finite. */
@@ -158,9 +165,11 @@ whit_result camera_frame(const whit_log *log, const struct scene_pose *pose,
         return result;
     if ((unsigned)camera.kind > WHIT_CAMERA_PANORAMA)
         return refuse(log, &camera, "there is no such kind of camera");
+    if (!fits_floats(camera.eye) || !fits_floats(camera.target) || !fits_floats(camera.up))
+        return refuse(log, &camera, "eye, target or up is not finite, or too large for a float");
     double forward[3], right[3], up[3], half = half_height(&camera);
     if (!make_basis(&camera, forward, right, up))
-        return refuse(log, &camera, "eye and target are the same point or not finite");
+        return refuse(log, &camera, "eye and target are the same point");
     if (!(half > 0.0) || !isfinite(half))
         return refuse(log, &camera,
                       camera.kind == WHIT_CAMERA_ORTHOGRAPHIC

@@ -83,6 +83,13 @@ whit_result params_check(const whit_log *log, whit_renderer_params *params)
                   params->time_s, params->bailout);
         return WHIT_ERROR_USAGE;
     }
+    if (!isfinite(params->exposure_ev) || !(params->time_limit_s >= 0.0)) {
+        log_error(log,
+                  "an exposure of %g and a time limit of %g s: the former must be finite, the "
+                  "latter not below 0",
+                  params->exposure_ev, params->time_limit_s);
+        return WHIT_ERROR_USAGE;
+    }
     if (!is_known(params)) {
         log_error(log, "parameters of a picture: a value of an enumeration that there is none of");
         return WHIT_ERROR_USAGE;

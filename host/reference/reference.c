@@ -257,12 +257,15 @@ whit_result reference_render(const struct reference *r, struct image *color, str
     if (ids)
         *ids = (struct image){0};
     struct job job = {.reference = r, .color = color, .ids = ids};
-    job.rows = array_alloc_zeroed(band_rows, sizeof *job.rows);
-    whit_result result = job.rows ? accel_pose_again(r->accel, &r->pose) : WHIT_ERROR_MEMORY;
+    whit_result result = accel_pose_again(r->accel, &r->pose);
+    if (result == WHIT_OK && !(job.rows = array_alloc_zeroed(band_rows, sizeof *job.rows))) {
+        log_error(&r->log, "out of memory for the reference");
+        result = WHIT_ERROR_MEMORY;
+    }
     if (result == WHIT_OK)
-        result = image_init(color, params->width, params->height, 4, false);
+        result = image_init_logged(&r->log, color, params->width, params->height, 4, false);
     if (result == WHIT_OK && ids)
-        result = image_init(ids, params->width, params->height, 2, true);
+        result = image_init_logged(&r->log, ids, params->width, params->height, 2, true);
     if (result == WHIT_OK)
         result = draw_bands(&job, band_rows, start_ms, stats);
     free(job.rows);

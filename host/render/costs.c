@@ -31,8 +31,8 @@ static whit_result keep(struct renderer *renderer, uint32_t kind, uint32_t x, ui
 {
     struct image *image = &renderer->costs[kind];
     if (!image->words) {
-        whit_result result =
-            image_init(image, renderer->params.width, renderer->params.height, COST_WORDS, true);
+        whit_result result = image_init_logged(&renderer->log, image, renderer->params.width,
+                                               renderer->params.height, COST_WORDS, true);
         if (result != WHIT_OK)
             return result;
     }
@@ -68,11 +68,12 @@ whit_result renderer_read_costs(struct renderer *renderer, uint32_t kind, struct
     if (!renderer->rendered || !params->count || kind >= RAY_KIND_COUNT) {
         log_error(&renderer->log, "%s",
                   !params->count        ? "costs were not asked for when the renderer was made"
-                  : !renderer->rendered ? "no picture was rendered yet"
+                  : !renderer->rendered ? RENDER_NO_PICTURE
                                         : "there is no such kind of rays");
         return WHIT_ERROR_USAGE;
     }
-    whit_result result = image_init(out, params->width, params->height, COST_WORDS, true);
+    whit_result result =
+        image_init_logged(&renderer->log, out, params->width, params->height, COST_WORDS, true);
     size_t words = (size_t)params->width * params->height * COST_WORDS;
     if (result == WHIT_OK && renderer->costs[kind].words)
         memcpy(out->words, renderer->costs[kind].words, words * sizeof *out->words);

@@ -115,6 +115,15 @@ uint32_t hooks_aov_count(const struct target *target)
     return shader && (!target->probed || shader->dbg.count) ? shader->aov_count : 0;
 }
 
+whit_result hooks_check_step_aov(const struct renderer *renderer, uint32_t step_aov)
+{
+    uint32_t count = hooks_aov_count(&renderer->picture);
+    if (step_aov <= count)
+        return WHIT_OK;
+    log_error(&renderer->log, "steps of the aov number %u: the shader has %u", step_aov, count);
+    return WHIT_ERROR_USAGE;
+}
+
 whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders)
 {
     char why[512];

@@ -12,6 +12,8 @@ const struct shader_code *hooks_code(const struct target *target, const char *ke
 uint32_t hooks_dbg_count(const struct target *target);
 /* The number of the shader's aovs. A probe calls them only where the file has dbg(x). */
 uint32_t hooks_aov_count(const struct target *target);
+/* WHIT_ERROR_USAGE, logged, for a step_aov above the number of aovs. */
+WHIT_CHECK whit_result hooks_check_step_aov(const struct renderer *renderer, uint32_t step_aov);
 /* Sets renderer->sliders. WHIT_ERROR_USAGE, logged, for sliders that the shader does not have. */
 WHIT_CHECK whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders);
 /* Finds the material of intersect()'s shape in the scene. Where no primitive has a material of that

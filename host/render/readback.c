@@ -165,10 +165,11 @@ static whit_result begin_read(const struct renderer *renderer, uint32_t channels
                               struct image *out)
 {
     if (!renderer->rendered) {
-        log_error(&renderer->log, "no picture was rendered yet");
+        log_error(&renderer->log, RENDER_NO_PICTURE);
         return WHIT_ERROR_USAGE;
     }
-    return image_init(out, renderer->params.width, views_rows(renderer), channels, integers);
+    return image_init_logged(&renderer->log, out, renderer->params.width, views_rows(renderer),
+                             channels, integers);
 }
 
 /* Removes the rows of padding between views. */

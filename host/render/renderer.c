@@ -89,6 +89,8 @@ whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct
     if (result == WHIT_OK)
         result = effects_check(log, &renderer->params);
     if (result == WHIT_OK)
+        result = hooks_check_step_aov(renderer, renderer->params.step_aov);
+    if (result == WHIT_OK)
         result = hooks_read_sliders(renderer, renderer->params.sliders);
     if (result == WHIT_OK)
         result = hooks_find_material(renderer);

@@ -258,6 +258,9 @@ enum { STATUS_LOOP_AT = 8, STATUS_SHAPE_AT = 12 };
 enum { READ_SLICE = 4096 }; /* pixels that are read back at once */
 enum { ADAPTIVE_MAX = 64 }; /* most samples of a pixel in an adaptive picture */
 
+/* Why there is nothing to read: renderer->rendered is false. */
+#define RENDER_NO_PICTURE                                                                          \
+    "there is no picture: none was rendered since the renderer was made, changed or failed"
 /* Logs that host memory ran out for `what`, and returns WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result render_no_memory(const struct renderer *renderer, const char *what);
 /* Whether surfaces send rays on, with the parameters and effects of the renderer. */

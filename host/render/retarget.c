@@ -27,6 +27,7 @@ static whit_renderer_params merge(const whit_renderer_params *own, const whit_re
     params.few_pixels = from->few_pixels;
     params.bailout = from->bailout;
     params.depth = from->depth;
+    params.exposure_ev = from->exposure_ev;
     params.time_stages = from->time_stages;
     return params;
 }
@@ -54,6 +55,8 @@ whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_par
 {
     whit_renderer_params wanted = merge(&renderer->params, params);
     whit_result result = params_check(&renderer->log, &wanted);
+    if (result == WHIT_OK)
+        result = hooks_check_step_aov(renderer, wanted.step_aov);
     if (result == WHIT_OK)
         result = hooks_read_sliders(renderer, params->sliders);
     if (result != WHIT_OK)

@@ -141,9 +141,8 @@ static void restore_stats(struct renderer *renderer)
 whit_result reuse_render(struct renderer *renderer)
 {
     struct kept_picture *kept = &renderer->kept;
-    uint32_t aov = renderer->params.step_aov;
     bool steps = steps_are_wanted(renderer), draws = !kept->aovs;
-    bool waits = draws && aov && aov <= hooks_aov_count(&renderer->picture);
+    bool waits = draws && renderer->params.step_aov;
     whit_result result = WHIT_OK;
     if (has(renderer, STAGE_POST))
         result = draw_post(renderer);

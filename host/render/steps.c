@@ -75,7 +75,7 @@ static whit_result read_row(const struct renderer *renderer, uint32_t y, float *
     const whit_renderer_params *params = &renderer->params;
     uint64_t row_bytes = (uint64_t)params->width * 4 * sizeof *row;
     uint32_t aov = params->step_aov;
-    if (aov && aov <= hooks_aov_count(&renderer->picture))
+    if (aov)
         return readback_aov_row(renderer, aov - 1, y, all, row);
     return buffer_read(renderer->picture.buffers.pixels, y * row_bytes, row, row_bytes);
 }

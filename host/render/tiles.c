@@ -389,10 +389,27 @@ struct progress render_progress(const struct renderer *renderer)
     };
 }
 
+static whit_result make_images(struct renderer *renderer)
+{
+    const whit_log *log = &renderer->log;
+    uint32_t width = renderer->params.width, rows = views_rows(renderer);
+    uint32_t aovs = hooks_aov_count(&renderer->picture);
+    bool data = pixels_have_data(&renderer->picture);
+    bool cuts = data && renderer->params.sampling.kind == WHIT_SAMPLING_FIXED;
+    whit_result result = image_init_logged(log, &renderer->color, width, rows, 4, false);
+    if (result == WHIT_OK && data)
+        result = image_init_logged(log, &renderer->ids, width, rows, 2, true);
+    if (result == WHIT_OK && cuts)
+        result = image_init_logged(log, &renderer->cuts, width, rows, 2, false);
+    if (result == WHIT_OK && renderer->views.count)
+        result = image_init_logged(log, &renderer->distances, width, rows, 1, false);
+    if (result == WHIT_OK && aovs)
+        result = image_init_logged(log, &renderer->aovs, width * aovs, rows, 4, false);
+    return result;
+}
+
 whit_result render_all(struct renderer *renderer)
 {
-    const whit_renderer_params *params = &renderer->params;
-    uint32_t rows = views_rows(renderer);
     renderer->rendered = false;
     if (renderer->between_times) {
         log_error(&renderer->log,
@@ -413,18 +430,7 @@ whit_result render_all(struct renderer *renderer)
     bool outlives = result == WHIT_OK && reuse_outlives(renderer);
     renderer->kept.known = false;
     if (result == WHIT_OK && !readback_is_late(renderer))
-        result = image_init(&renderer->color, params->width, rows, 4, false);
-    bool data = pixels_have_data(&renderer->picture);
-    if (result == WHIT_OK && !readback_is_late(renderer) && data)
-        result = image_init(&renderer->ids, params->width, rows, 2, true);
-    if (result == WHIT_OK && !readback_is_late(renderer) && data &&
-        params->sampling.kind == WHIT_SAMPLING_FIXED)
-        result = image_init(&renderer->cuts, params->width, rows, 2, false);
-    if (result == WHIT_OK && !readback_is_late(renderer) && renderer->views.count)
-        result = image_init(&renderer->distances, params->width, rows, 1, false);
-    uint32_t aovs = hooks_aov_count(&renderer->picture);
-    if (result == WHIT_OK && !readback_is_late(renderer) && aovs)
-        result = image_init(&renderer->aovs, params->width * aovs, rows, 4, false);
+        result = make_images(renderer);
     stats_clear(&renderer->picture);
     struct progress progress = render_progress(renderer);
     if (result == WHIT_OK)

@@ -214,10 +214,10 @@ whit_result views_leave(struct renderer *renderer)
 whit_result renderer_render_views(struct renderer *renderer, const whit_camera *cameras,
                                   uint32_t count)
 {
-    renderer->rendered = false;
     whit_result result = check(renderer, count);
     if (result != WHIT_OK)
         return result;
+    renderer->rendered = false;
     result = views_take(renderer, cameras, count);
     return result == WHIT_OK ? render_all(renderer) : result;
 }

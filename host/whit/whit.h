@@ -8,7 +8,8 @@
    whit_renderer_params: start that from whit_renderer_defaults(), because 0 bounces there means
    none and a bail-out of 0 traces every ray. Params are read during the call only. On failure an
    out parameter is NULL or untouched, the reason went to the log callback as one line (where the
-   call or a handle has one), and the result says which kind it was. Each function names the results
+   call or a handle has one; what a `cancel` flag ended may log nothing), and the result says which
+   kind it was. Each function names the results
    that it may give beside WHIT_OK and WHIT_ERROR_MEMORY, which any of them may.
 
    Threads: different handles may be used from different threads; one handle from one at a time. An

@@ -141,9 +141,10 @@ typedef struct whit_renderer_params {
        once. `step` is called from the rendering thread with progress_user after each step but the
        last. */
     uint32_t step_spacing; /* 2, 4 or 8; 0: no steps */
-    uint32_t step_aov;     /* what steps show: 1 + the index of an aov of `shader`; 0: colours */
+    uint32_t step_aov;     /* what steps show: 1 + the index of an aov of `shader`, up to the number
+                              of its aovs; 0: colours */
     void (*step)(void *user, const whit_step *step);
-    double time_limit_s; /* from whit_renderer_create on; 0: none */
+    double time_limit_s; /* from whit_renderer_create on, not below 0; 0: none */
     whit_load_path load_path;
     whit_traversal traversal;
     whit_numerics numerics;
@@ -152,7 +153,8 @@ typedef struct whit_renderer_params {
     whit_packets packets;
     whit_classes classes;
     uint32_t segments;
-    bool count; /* counts traversal costs, for whit_stats.costs and whit_renderer_cost_image */
+    bool count; /* counts traversal costs, for whit_stats.costs and whit_renderer_cost_image; not
+                   with adaptive samples */
     /* Functions in the place of whit's own, borrowed as long as the renderer lives; NULL: none. Its
        kernels are made before the first picture, whatever compile_async says. */
     const whit_shader *shader;
@@ -183,7 +185,8 @@ void whit_renderer_destroy(whit_renderer *renderer);
 
 /* Renders the whole picture. WHIT_ERROR_STATUS when a kernel reported that its result cannot be
    trusted (logged in words); WHIT_ERROR_USAGE without a device; WHIT_ERROR_DEVICE,
-   WHIT_ERROR_TIME_LIMIT, WHIT_ERROR_CANCELLED. May be called again: the same bytes. */
+   WHIT_ERROR_TIME_LIMIT, WHIT_ERROR_CANCELLED. May be called again: the same bytes. After an error
+   there is no picture, also not the one before, whose memory was drawn over. */
 WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
 
 /* Draws `count` small pictures (views) together, one for each of `cameras`, in the renderer's size:
@@ -195,7 +198,8 @@ WHIT_CHECK whit_result whit_renderer_render(whit_renderer *renderer);
    all of them, some 40 bytes a pixel. `cameras` are read during the call. WHIT_ERROR_USAGE for no
    or too many cameras, for a camera that a renderer refuses (logged with the number of the view),
    and for params with a shader, adaptive samples, `count` or `row_count`. Other errors as of
-   whit_renderer_render. */
+   whit_renderer_render. The picture before stays where the number of cameras or params are
+   refused. */
 WHIT_CHECK whit_result whit_renderer_render_views(whit_renderer *renderer,
                                                   const whit_camera *cameras, uint32_t count);
 
@@ -367,7 +371,8 @@ void whit_stats_add(const whit_stats *from, whit_stats *to);
 /* ---- Rays ---- */
 
 /* Directions need not have unit length; t is measured in lengths of `dir`. Hits have t_min <= t <=
-   t_max. */
+   t_max. With a negative t_min hits behind the origin count, but some may be missed; at
+   WHIT_NUMERICS_EXACT it counts as 0 (docs/numerics.md). */
 typedef struct whit_ray {
     float origin[3], t_min, dir[3], t_max;
 } whit_ray;
@@ -389,7 +394,8 @@ typedef enum whit_trace_on {
 } whit_trace_on;
 
 /* Finds the closest hit of each ray, or with `any` any hit (then only `primitive` != WHIT_NONE has
-   a meaning). Rays that are not finite miss. Cut-outs count as solid. `cost`: gets the cost of all
+   a meaning). Rays miss whose origin or direction is not finite or whose t_min is NaN; a t_max of
+   NaN is no limit. Cut-outs count as solid. `cost`: gets the cost of all
    rays together, or NULL (on the device it needs params.count). WHIT_ERROR_STATUS where the hits
    cannot be trusted, WHIT_ERROR_USAGE for what the renderer was not made for (no device, `count`
    false), WHIT_ERROR_CANCELLED; WHIT_ERROR_DEVICE on the device. */

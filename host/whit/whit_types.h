@@ -43,7 +43,7 @@ typedef struct whit_camera {
                          name */
     bool own;         /* true: the fields below define the camera and `name` is not read */
     whit_camera_kind kind;
-    double eye[3], target[3], up[3]; /* world space */
+    double eye[3], target[3], up[3]; /* world space; finite, also as floats */
     double fov_y_degrees;            /* PERSPECTIVE: vertical, between 0 and 180 */
     double height;                   /* ORTHOGRAPHIC: of the picture, world units; above 0 */
     double lens_radius;              /* PERSPECTIVE: radius of a thin lens, world units; 0: a

@@ -1,4 +1,5 @@
 /* Parameters that no picture can have are refused by name, and NULL means the defaults. */
+#include "../wrapped.h"
 #include "messages_fixture.h"
 #include "unit.h"
 #include "whit.h"
@@ -56,6 +57,14 @@ TEST_IN(values_out_of_range_are_refused, begin, end)
         params = small();
         params.depth = 999;
         refuse(i ? device : NULL, &params, "depth 999: must be 0..255");
+        params = small();
+        params.exposure_ev = NAN;
+        refuse(i ? device : NULL, &params, "an exposure of nan and a time limit of 0 s");
+        params = small();
+        params.time_limit_s = NAN;
+        refuse(i ? device : NULL, &params, "a time limit of nan s");
+        params.time_limit_s = -1.0;
+        refuse(i ? device : NULL, &params, "a time limit of -1 s");
     }
     whit_renderer_params params = small();
     params.camera = (whit_camera){
@@ -66,6 +75,107 @@ TEST_IN(values_out_of_range_are_refused, begin, end)
     refuse(device, &params, "the lens or its focus is below 0");
     params.camera.kind = WHIT_CAMERA_ORTHOGRAPHIC;
     refuse(device, &params, "the height of the picture is not above 0");
+    params = small();
+    params.step_aov = 7;
+    refuse(device, &params, "steps of the aov number 7: the shader has 0");
+    double *const values[] = {params.camera.eye, params.camera.target, params.camera.up};
+    const double bad[] = {NAN, -INFINITY, 1e39, 1e300};
+    for (int i = 0; i < 12; ++i) {
+        params = small();
+        params.camera =
+            (whit_camera){.own = true, .eye = {0, 1, 5}, .up = {0, 1, 0}, .fov_y_degrees = 40};
+        values[i % 3][1] = bad[i / 3];
+        refuse(device, &params, "eye, target or up is not finite, or too large for a float");
+    }
+}
+
+TEST_IN(a_view_out_of_range_leaves_the_picture, begin, end)
+{
+    whit_renderer_params params = small();
+    whit_renderer *renderer = NULL;
+    whit_image *image = NULL;
+    const whit_camera nowhere = {.own = true};
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    params.exposure_ev = INFINITY;
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_ERROR_USAGE);
+    params = small();
+    params.step_aov = 1;
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_ERROR_USAGE);
+    assert_int_equal(whit_renderer_render_views(renderer, NULL, 0), WHIT_ERROR_USAGE);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_OK);
+    whit_image_destroy(image);
+    assert_int_equal(whit_renderer_render_views(renderer, &nowhere, 1), WHIT_ERROR_USAGE);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_ERROR_USAGE);
+    assert_non_null(strstr(messages.last_error, "since the renderer was made, changed or failed"));
+    whit_renderer_destroy(renderer);
+}
+
+TEST_IN(rays_are_traced_in_one_of_the_ways_that_there_are, begin, end)
+{
+    const whit_ray ray = {{0, 9, 0}, 0, {0, -1, 0}, INFINITY};
+    const whit_renderer_params params = small();
+    whit_renderer *renderer = NULL;
+    whit_hit hit;
+    assert_int_equal(whit_renderer_create(NULL, accel, &params, &renderer), WHIT_OK);
+    messages = (struct messages){0};
+    assert_int_equal(whit_trace(renderer, (whit_trace_on)9, &ray, 1, false, &hit, NULL),
+                     WHIT_ERROR_USAGE);
+    assert_non_null(strstr(messages.last_error, "not on 9"));
+    whit_renderer_destroy(renderer);
+}
+
+TEST(limits_of_importers_are_not_below_0)
+{
+    const whit_load_params bad[] = {{.import_limit_s = NAN},
+                                    {.import_limit_s = -1.0},
+                                    {.time_limit_s = NAN},
+                                    {.time_limit_s = -1.0}};
+    const char *path = WHIT_SCENES_DIR "/cube.json";
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
+        whit_scene *loaded = NULL;
+        whit_image *image = NULL;
+        whit_text *texts = NULL;
+        uint32_t count;
+        messages = (struct messages){0};
+        assert_int_equal(whit_scene_load(path, &bad[i], &warnings_log, &loaded), WHIT_ERROR_USAGE);
+        assert_int_equal(whit_image_load(path, &bad[i], &warnings_log, &image), WHIT_ERROR_USAGE);
+        assert_int_equal(whit_image_load_texts(path, &bad[i], &warnings_log, &texts, &count),
+                         WHIT_ERROR_USAGE);
+        assert_int_equal(messages.errors, 3);
+        assert_non_null(strstr(messages.last_error, "s for importers: must not be below 0"));
+    }
+}
+
+/* Wrapped at link time: while it is set, there is no memory for as many pixels. */
+static size_t starved_of;
+
+WRAPPED(void *, array_alloc_zeroed, size_t count, size_t element_bytes)
+{
+    return starved_of && count == starved_of ? NULL
+                                             : __real_array_alloc_zeroed(count, element_bytes);
+}
+
+TEST_IN(a_picture_without_memory_is_one_line_in_the_log, begin, end)
+{
+    const whit_renderer_params params = small();
+    whit_renderer *renderer = NULL;
+    whit_reference *reference = NULL;
+    whit_image *image = NULL;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_reference_create(accel, &params, 1, &reference), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    messages = (struct messages){0};
+    starved_of = 16 * 16;
+    whit_result drawn = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
+    whit_result referred = whit_reference_render(reference, &image, NULL);
+    starved_of = 0;
+    assert_int_equal(drawn, WHIT_ERROR_MEMORY);
+    assert_int_equal(referred, WHIT_ERROR_MEMORY);
+    assert_int_equal(messages.errors, 2);
+    assert_non_null(strstr(messages.last_error, "out of memory for 16 x 16 pixels"));
+    whit_reference_destroy(reference);
+    whit_renderer_destroy(renderer);
 }
 
 /* The grid of camera rays has as many columns as wanted rays at most, however wide the picture. */
@@ -162,6 +272,7 @@ TEST_IN(no_params_are_the_defaults, begin, end)
     assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_OK);
     whit_image_get_info(image, &info);
     assert_int_equal(info.width, 640);
+    whit_image_display_as(image, NULL);
     whit_image_destroy(image);
     assert_int_equal(whit_refine_create(renderer, NULL, &refine), WHIT_OK);
     whit_refine_destroy(refine);
