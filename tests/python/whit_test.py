@@ -103,6 +103,8 @@ def test_rays(renderer):
     for device in (0, whit.TraceOn.DEVICE):
         with pytest.raises(whit.Error, match="without a device"):
             twin.trace(rays, on=device)
+    with pytest.raises(whit.Error, match="not on 7"):
+        twin.trace(rays, on=7)
 
 
 def test_numpy(renderer):
