@@ -90,7 +90,7 @@ static uint32_t step_siblings(struct walk *walk, const struct ray_setup *ray, fl
 {
     const struct gpu_bvh_node *a = &walk->accel->nodes[pair], *b = a + 1;
     float a_near, a_far, b_near, b_far, t_min = walk->t_min;
-    if (walk->numerics == NUMERICS_EXACT && !(t_min > NEAR_MIN))
+    if (walk->numerics == NUMERICS_EXACT && t_min < NEAR_MIN)
         t_min = NEAR_MIN;
     slab_interval(ray, vec3_sub(vec3_load(a->lo), ray->above),
                   vec3_sub(vec3_load(a->hi), ray->below), t_min, &a_near, &a_far);

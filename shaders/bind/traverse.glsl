@@ -199,8 +199,8 @@ uint step_siblings(RaySetup ray, float t_min, float near_share, uint pair, inout
     precise vec3 b_lo = row_vec3(b0) - ray.above;
     precise vec3 b_hi = row_vec3(b1) - ray.below;
     float a_near, a_far, b_near, b_far;
-    if (SPEC_NUMERICS == NUMERICS_EXACT) // for enters()
-        t_min = t_min > intBitsToFloat(NEAR_STEPS) ? t_min : intBitsToFloat(NEAR_STEPS);
+    if (SPEC_NUMERICS == NUMERICS_EXACT) // for enters(); NaN stays
+        t_min = t_min < intBitsToFloat(NEAR_STEPS) ? intBitsToFloat(NEAR_STEPS) : t_min;
     slab_interval(ray, a_lo, a_hi, t_min, a_near, a_far);
     slab_interval(ray, b_lo, b_hi, t_min, b_near, b_far);
     bool hit_a = enters(a_near, a_far, near_share, hit);
