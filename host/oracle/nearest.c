@@ -144,3 +144,14 @@ double accel_distance(const struct accel *accel, const struct scene_pose *pose, 
     }
     return q.best2 < DBL_MAX ? sqrt(q.best2) : INFINITY;
 }
+
+float accel_light_end_share(const struct accel *accel, const struct scene_pose *pose,
+                            const struct scene_light *light)
+{
+    double rounding = 0.0;
+    if (light->kind != WHIT_LIGHT_POINT && light->kind != WHIT_LIGHT_SPOT)
+        return 0.0f;
+    for (int i = 0; i < 3; ++i)
+        rounding = fmax(rounding, fabs(light->position[i]) * 0x1p-22);
+    return accel_distance(accel, pose, light->position) <= rounding ? 1.0f / 4096.0f : 0.0f;
+}

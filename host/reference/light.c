@@ -47,6 +47,24 @@ static struct dvec3 at_most(struct dvec3 light)
     return d3(fmin(light.x, LIGHT_MAX), fmin(light.y, LIGHT_MAX), fmin(light.z, LIGHT_MAX));
 }
 
+static double largest_size(struct dvec3 a)
+{
+    return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
+}
+
+/* How far before the light a shadow ray ends, so that a surface in which the light lies casts no
+   shadow: where an emitter's plane and a surface's differ by roundings of their coordinates, this
+   is what such a surface is off along the ray. */
+static double end_before(const struct reference *reference, const struct scene_light *light,
+                         struct dvec3 p, struct dvec3 way, double cos_away)
+{
+    double distance = d3_length(way), share = 1.0 / 4096.0;
+    if (!scene_light_is_flat(light) && light->kind != WHIT_LIGHT_AREA_SAMPLE)
+        return distance * (double)reference->end_shares[light - reference->pose.lights];
+    double rounding = (largest_size(p) + largest_size(way)) * 0x1p-20;
+    return fmin(distance * share, rounding / fabs(cos_away));
+}
+
 bool light_at(const struct tracer *tracer, const struct scene_light *light, uint32_t index,
               struct dvec3 p, struct light_sample_info *sample)
 {
@@ -80,8 +98,7 @@ bool light_at(const struct tracer *tracer, const struct scene_light *light, uint
     sample->arriving = at_most(d3_scale(sample->arriving, share));
     if (light->range > 0.0f && sample->distance > (double)light->range)
         return false;
-    if (flat) /* the ray ends before the emitter, so that surfaces in its plane cast no shadow */
-        sample->distance *= 1.0 - 1.0 / 4096.0;
+    sample->distance -= end_before(tracer->reference, light, p, way, cos_away);
     return d3_largest(sample->arriving) > 0.0;
 }
 

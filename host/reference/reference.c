@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/color.h"
 #include "base/threads.h"
+#include "oracle/nearest.h"
 #include "reference/tree.h"
 #include "scene/pose.h"
 
@@ -68,8 +69,11 @@ static bool fill_tables(struct reference *r)
     const struct scene *scene = r->scene;
     r->placings = array_alloc(r->pose.instance_count, sizeof *r->placings);
     r->alphas = array_alloc(scene->texture_count, sizeof *r->alphas);
-    if (!r->placings || !r->alphas)
+    r->end_shares = array_alloc(r->pose.light_count, sizeof *r->end_shares);
+    if (!r->placings || !r->alphas || !r->end_shares)
         return false;
+    for (uint32_t i = 0; i < r->pose.light_count; ++i)
+        r->end_shares[i] = accel_light_end_share(r->accel, &r->pose, &r->pose.lights[i]);
     for (uint32_t i = 0; i < r->pose.instance_count; ++i) {
         r->placings[i].forward = r->pose.instances[i];
         if (!affine_invert(&r->pose.instances[i], &r->placings[i].inverse))
@@ -135,6 +139,7 @@ void reference_destroy(struct reference *r)
     free(r->placings);
     free(r->alphas);
     free(r->sky);
+    free(r->end_shares);
     free(r);
 }
 

@@ -5,6 +5,7 @@
 #include "base/array.h"
 #include "base/vec.h"
 #include "device/buffer.h"
+#include "oracle/nearest.h"
 #include "render/lights.h"
 #include "render/renderer.h"
 
@@ -54,7 +55,7 @@ static struct gpu_light make_light(const struct scene_light *light, uint32_t sam
     }
     if (scene_light_is_flat(light)) {
         out.falloff = true;
-        out.area_share = (float)(emitter_area(light) / (PI * samples));
+        out.share = (float)(emitter_area(light) / (PI * samples));
         for (int i = 0; i < 3; ++i) {
             out.edge_u[i] = (float)light->edge_u[i];
             out.edge_v[i] = (float)light->edge_v[i];
@@ -69,8 +70,11 @@ whit_result lights_write(struct renderer *renderer)
     struct gpu_light *lights = array_alloc(pose->light_count, sizeof *lights);
     if (!lights)
         return render_no_memory(renderer, "lights");
-    for (uint32_t i = 0; i < pose->light_count; ++i)
+    for (uint32_t i = 0; i < pose->light_count; ++i) {
         lights[i] = make_light(&pose->lights[i], lights_samples(renderer));
+        if (!scene_light_is_flat(&pose->lights[i]))
+            lights[i].share = accel_light_end_share(renderer->accel, pose, &pose->lights[i]);
+    }
     whit_result result = buffer_write(renderer->scene_buffers.shading,
                                       (uint64_t)renderer->frame.light_row * ROW_BYTES, lights,
                                       (uint64_t)pose->light_count * sizeof *lights);

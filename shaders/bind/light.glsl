@@ -41,7 +41,7 @@ struct LightSample {
     vec3 to_light; // unit
     float distance;
     vec3 arriving;  // irradiance over pi, facing the light, before shadows
-    float strength; // flat emitters: arriving = color * area_share * strength
+    float strength; // flat emitters: arriving = color * share * strength
 };
 
 bool is_flat(gpu_light light)
@@ -76,6 +76,22 @@ vec3 light_point(gpu_light light, uint index)
     return is_flat(light) ? emitter_point(light, index) : light.position;
 }
 
+// Emitters that are smaller than this share of their distance have the light of their middle: the
+// integral is off by the square of it, and its edge terms cancel to noise of 1e-6 by it.
+const float SMALL_EMITTER = 1.0 / 128.0;
+
+// Form factor of an emitter all of which is `away`, as polygon_form_factor gives it. `c0`: its first
+// corner, in units of `away`.
+float small_form_factor(gpu_light light, vec3 c0, float away, vec3 n)
+{
+    bool triangle = light.kind == LIGHT_TRIANGLE;
+    vec3 u = light.edge_u / away, v = light.edge_v / away;
+    vec3 middle = c0 + (u + v) * (triangle ? 1.0 / 3.0 : 0.5);
+    float square = dot(middle, middle);
+    float area_seen = -dot(cross(u, v), middle) * (triangle ? 0.5 : 1.0);
+    return area_seen * max(dot(n, middle), 0.0) / (POLYGON_PI * square * square);
+}
+
 // Form factor of a flat emitter at `p`, which may be off by `error`, with shading normal `n`,
 // without shadows.
 float emitter_form_factor(gpu_light light, vec3 p, vec3 error, vec3 n)
@@ -89,8 +105,22 @@ float emitter_form_factor(gpu_light light, vec3 p, vec3 error, vec3 n)
     if (abs(height) <= dot(rounding_bound(4.0) * abs(c0) + error, abs(light.direction)))
         return 0.0;
     float factor = polygon_form_factor(n, c0, c1, c2, c3);
+    vec3 reach = abs(c0), side = max(abs(light.edge_u), abs(light.edge_v));
+    float away = max(reach.x, max(reach.y, reach.z));
+    if (max(side.x, max(side.y, side.z)) < away * SMALL_EMITTER)
+        factor = small_form_factor(light, c0 / away, away, n);
     bool front = height > 0.0;
     return front ? max(factor, 0.0) : light.two_sided != 0u ? max(-factor, 0.0) : 0.0;
+}
+
+// The largest share of its length by which a shadow ray to an emitter ends before it.
+const float END_SHARE_MAX = 1.0 / 4096.0;
+
+// How far a point of an emitter may be from a surface in the same plane, and a hit of it: by
+// roundings of their coordinates. `way`: the largest component of the way from `p` to the point.
+float plane_rounding(vec3 p, float way)
+{
+    return (max(abs(p.x), max(abs(p.y), abs(p.z))) + way) * (1.0 / 1048576.0);
 }
 
 // Sample `index` of a light towards `p`. False: nothing arrives.
@@ -129,14 +159,16 @@ bool light_at(gpu_light light, uint index, vec3 p, out LightSample from)
         from.arriving *= cos_emitter;
     if (flat_emitter) {
         from.strength = min(cos_emitter / square, LIGHT_MAX);
-        from.arriving = light.color * (light.area_share * from.strength);
+        from.arriving = light.color * (light.share * from.strength);
     }
     from.arriving = min(from.arriving, vec3(LIGHT_MAX));
     if (from.distance > light.range)
         return false;
-    // Shortened: a surface in one plane with the emitter, as a ceiling may be, casts no shadow.
-    if (flat_emitter)
-        from.distance *= 1.0 - 1.0 / 4096.0;
+    // Shortened: a surface in which the light lies, as a ceiling may be, casts no shadow.
+    if (flat_emitter || light.kind == LIGHT_AREA_SAMPLE)
+        from.distance -= min(from.distance * END_SHARE_MAX, plane_rounding(p, largest) / abs(cos_away));
+    else
+        from.distance -= from.distance * light.share;
     return max(from.arriving.r, max(from.arriving.g, from.arriving.b)) > 0.0;
 }
 

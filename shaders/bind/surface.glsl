@@ -217,10 +217,18 @@ Surface fetch_surface(Hit hit)
 // from there. A texture that moves by d1 and d2 along these edges then moves by J a, and half the
 // trace of J transposed J is the mean of the squares of the ellipse's axes: the sum of the three
 // parts times d1 d1, d1 d2 and d2 d2.
+//
+// Lengths are in units of a power of two near that of the edges, so that their fourth powers are in
+// the range of floats, with the same bits.
 void take_footprint(inout Surface s, vec3 dir, float area)
 {
-    vec3 along1 = cross(s.e2, dir), along2 = cross(dir, s.e1);
-    float seen = dot(cross(s.e1, s.e2), dir);
+    vec3 edges = max(abs(s.e1), abs(s.e2));
+    uint size = floatBitsToUint(max(edges.x, max(edges.y, edges.z))) & 0x7f800000u;
+    float unit = uintBitsToFloat(0x7f000000u - size); // 1 / 2^e
+    vec3 e1 = s.e1 * unit, e2 = s.e2 * unit;
+    area *= unit * unit;
+    vec3 along1 = cross(e2, dir), along2 = cross(dir, e1);
+    float seen = dot(cross(e1, e2), dir);
     vec3 parts = vec3(dot(along1, along1), 2.0 * dot(along1, along2), dot(along2, along2));
     s.footprint = parts * (0.5 * area / (seen * seen));
 }

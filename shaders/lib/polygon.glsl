@@ -32,7 +32,7 @@ float clipped_edge_term(vec3 n, vec3 a, vec3 b, float a_height, float b_height, 
 
 // Form factor from a point with unit normal `n` to a convex polygon of four corners, given relative
 // to the point (a triangle repeats one): irradiance = pi * radiance * form factor. The polygon is
-// cut at the horizon of `n`. The sign tells the winding. Relative error: about 1e-7 * distance /
+// cut at the horizon of `n`. The sign tells the winding. Relative error: about 1e-6 * distance /
 // size.
 float polygon_form_factor(vec3 n, vec3 c0, vec3 c1, vec3 c2, vec3 c3)
 {

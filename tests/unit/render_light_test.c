@@ -89,8 +89,10 @@ TEST_BY_TURNS(emitters_give_their_integral, 0, 4)
         double tolerance;
     } rows[] = {{{-0.7, 1.5, -0.4}, {2, 0, 0}, {0, 0, 1}, 16, 5e-6},
                 {{-4.5, 0.5, -2.5}, {1, 0.3, 6}, {0.5, 2, -0.3}, 4, 5e-6},
-                {{-4.5, -1.0, -2.0}, {1, 0.3, 6}, {0.5, 4, -0.3}, 64, 1e-3}};
-    for (int i = 0; i < 6; ++i) {
+                {{-4.5, -1.0, -2.0}, {1, 0.3, 6}, {0.5, 4, -0.3}, 64, 1e-3},
+                {{-0.7, 1.5, -0.4}, {1e-2, 0, 0}, {0, 1e-3, 5e-3}, 16, 2e-5},
+                {{-0.7, 1.5, -0.4}, {2e-6, 0, 0}, {0, 0, 1e-6}, 16, 5e-6}};
+    for (int i = 0; i < 10; ++i) {
         whit_light_kind kind = i % 2 ? WHIT_LIGHT_TRIANGLE : WHIT_LIGHT_RECTANGLE;
         check_form_factor(emitter(kind, rows[i / 2].corner, rows[i / 2].u, rows[i / 2].v, 3.0f),
                           rows[i / 2].samples, rows[i / 2].tolerance);
@@ -259,6 +261,44 @@ TEST_BY_TURNS(lamps_next_to_a_surface_are_on_one_side, 2, 4)
         }
         print_message("  at %g: off by %.2g at most\n", heights[i], worst);
         assert_true(worst <= 2e-4);
+    }
+}
+
+/* The floor of a hall, seen from below its ceiling. */
+static struct scene *hall(struct scene_light light)
+{
+    struct scene *scene = dark_scene((double[]){0, 2, 0.1}, (double[]){0, 0, 0});
+    add_object(scene, mesh_plane(40), matte(1, 1, 1), 0, 0, 0);
+    add_object(scene, mesh_plane(12), matte(1, 1, 1), 0, 3, 0);
+    scene_put_light(scene, light);
+    return scene;
+}
+
+static uint32_t count_lit(const struct image *image)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < image->width * image->height; ++i)
+        count += image->pixels[4 * (size_t)i] > 0.0f;
+    return count;
+}
+
+/* S4 of the catalogue of hard cases: a lamp in a ceiling lights the room, and that ceiling casts no
+   shadow; one that is hidden right above it does. */
+TEST(ceilings_hide_what_is_above_them)
+{
+    static const whit_numerics levels[] = {WHIT_NUMERICS_WATERTIGHT, WHIT_NUMERICS_EXACT};
+    for (int i = 0; i < 12; ++i) {
+        double y = i % 2 ? 3.0005 : 3.0;
+        struct scene_light light = emitter(WHIT_LIGHT_RECTANGLE, (double[]){0.2, y, -0.3},
+                                           (double[]){0.3, 0, 0}, (double[]){0, 0, 0.3}, 9.0f);
+        if (i / 2 % 3) {
+            light.kind = i / 2 % 3 == 1 ? WHIT_LIGHT_POINT : WHIT_LIGHT_AREA_SAMPLE;
+            light.direction[1] = -1.0;
+            light.falloff = true;
+        }
+        const whit_renderer_params params = {.width = 40, .height = 30, .numerics = levels[i / 6]};
+        own_image image = color_of(hall(light), NULL, &params);
+        assert_int_equal(count_lit(&image), i % 2 ? 0 : 40 * 30);
     }
 }
 

@@ -3,13 +3,27 @@
 #include "media_fixture.h"
 #include "unit.h"
 
-/* Shadows, mirror images, glass in glass, smooth normals, analytic balls. */
+/* Squares of one texel, small enough on the floor to be filtered. */
+static uint32_t put_squares(struct scene *scene)
+{
+    enum { SIDE = 32 };
+    uint8_t rgba[SIDE * SIDE * 4];
+    for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
+        memset(rgba + 4 * i, (i / SIDE + i) % 2 ? 230 : 40, 3);
+        rgba[4 * i + 3] = 255;
+    }
+    return scene_put_texture(scene, SIDE, SIDE, rgba);
+}
+
+/* Shadows, mirror images, glass in glass, smooth normals, analytic balls, a texture. */
 static struct scene *still_life(bool lamp)
 {
     struct scene *scene = dark_scene((double[]){0.3, 2.1, 6.2}, (double[]){0.1, 0.2, 0});
     struct scene_material m = matte(0.8f, 0.7f, 0.6f);
     set_sky(scene, 0.2f, 0.5f, 0.1f);
+    m.textures[SCENE_SLOT_DIFFUSE].texture = put_squares(scene);
     add_object(scene, mesh_plane(9), m, 0, -0.9, 0);
+    m = matte(0.8f, 0.7f, 0.6f);
     add_object(scene, mesh_torus(0.8, 0.3, 24, 12), m, -1.3, 0.1, -0.4);
     m = material_plain("mirror");
     set_rgb(m.reflection, 0.9f, 0.9f, 0.9f);
@@ -51,7 +65,8 @@ static void scale_scene(struct scene *scene, double by)
 
 static void compare_sizes(bool lamp, const double *scales, size_t count)
 {
-    const whit_renderer_params params = {.width = 48, .height = 36, .depth = 6};
+    const whit_renderer_params params = {
+        .width = 48, .height = 36, .depth = 6, .minification = WHIT_MINIFICATION_MIPMAP};
     own_image first = color_of(still_life(lamp), NULL, &params);
     for (size_t i = 0; i < count; ++i) {
         struct scene *scene = still_life(lamp);
