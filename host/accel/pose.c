@@ -19,26 +19,42 @@ enum { CHUNK_INSTANCES = 512 }; /* filled by one call */
    each) of the coordinates involved, so boxes in world space are widened by 16 of them. */
 static const double WIDENING = 0x1p-20;
 
+/* How far errors of a coordinate in world space come back from object space, as a share of that
+   coordinate: on the same axis, and on each axis from the two others together. */
+struct spread {
+    double own[3], others[3];
+};
+
+static void spread_raise(struct spread *spread, const struct spread *by)
+{
+    for (int i = 0; i < 3; ++i) {
+        spread->own[i] = fmax(spread->own[i], by->own[i]);
+        spread->others[i] = fmax(spread->others[i], by->others[i]);
+    }
+}
+
 /* The world-space box of an instance, widened. A point p reaches object space as inverse * (p -
    origin): errors relative to |p - origin| on one world axis come back on the others multiplied by
-   |forward| * |inverse|. What they have from the box and the instance's origin is in this margin;
-   what they have from the ray's origin is in the ray's (gpu_instance.slack). *spread_max: raised to
-   the largest sum of a row of |forward| * |inverse|. */
+   |forward| * |inverse|, which gives *spread. What they have from the box and the instance's origin
+   is in this margin; what they have from the ray's origin is in the ray's (instances_slack). */
 static struct bvh_box world_box(const struct affine *forward, const struct affine *inverse,
-                                const struct bvh_box *box, double *spread_max)
+                                const struct bvh_box *box, struct spread *spread)
 {
     struct accel_extent extent = accel_transformed_box(forward->m, box);
     struct bvh_box out;
     for (int r = 0; r < 3; ++r) {
-        double margin = 0.0, spread_sum = 0.0;
+        double margin = 0.0;
+        spread->others[r] = 0.0;
         for (int c = 0; c < 3; ++c) {
-            double spread = 0.0;
+            double part = 0.0;
             for (int k = 0; k < 3; ++k)
-                spread += fabs(forward->m[4 * r + k]) * fabs(inverse->m[4 * k + c]);
-            margin += spread * extent.size[c];
-            spread_sum += spread;
+                part += fabs(forward->m[4 * r + k]) * fabs(inverse->m[4 * k + c]);
+            margin += part * extent.size[c];
+            if (c == r)
+                spread->own[r] = part;
+            else
+                spread->others[r] += part;
         }
-        *spread_max = fmax(*spread_max, spread_sum);
         out.lo[r] = float_below(extent.lo[r] - margin * WIDENING);
         out.hi[r] = float_above(extent.hi[r] + margin * WIDENING);
     }
@@ -103,9 +119,9 @@ struct accel_posing {
     struct bvh_box *boxes;          /* [rank]: of instances that are not empty */
     uint32_t *ranks;                /* [instance]: its rank; UINT32_MAX: it is empty */
     uint32_t *indices;              /* [rank]: its instance */
-    uint32_t *bad;  /* [chunk]: its first instance without an inverse, or UINT32_MAX */
-    double *spread; /* [chunk]: spread_max of world_box */
-    uint32_t count; /* of ranks */
+    uint32_t *bad;         /* [chunk]: its first instance without an inverse, or UINT32_MAX */
+    struct spread *spread; /* [chunk]: the largest of its instances */
+    uint32_t count;        /* of ranks */
     bool has_tree;
 };
 
@@ -178,7 +194,7 @@ static void fill_chunk(void *user, uint32_t chunk)
     uint32_t begin = chunk * CHUNK_INSTANCES, left = accel->instance_count - begin;
     uint32_t end = begin + (left < CHUNK_INSTANCES ? left : CHUNK_INSTANCES);
     posing->bad[chunk] = UINT32_MAX;
-    posing->spread[chunk] = 0.0;
+    posing->spread[chunk] = (struct spread){.own = {0}};
     for (uint32_t i = begin; i < end; ++i) {
         const struct affine *forward = &filling->pose->instances[i];
         uint32_t mesh_index = accel->scene->instances[i].mesh;
@@ -189,9 +205,11 @@ static void fill_chunk(void *user, uint32_t chunk)
             posing->bad[chunk] = i;
             return;
         }
-        if (posing->ranks[i] != UINT32_MAX)
-            posing->boxes[posing->ranks[i]] =
-                world_box(forward, &inverse, &mesh->box, &posing->spread[chunk]);
+        struct spread spread;
+        if (posing->ranks[i] == UINT32_MAX)
+            continue;
+        posing->boxes[posing->ranks[i]] = world_box(forward, &inverse, &mesh->box, &spread);
+        spread_raise(&posing->spread[chunk], &spread);
     }
 }
 
@@ -201,11 +219,9 @@ static whit_result instances_fill(const struct accel *accel, const struct scene_
     struct filling filling = {accel, pose, posing,
                               accel->flat ? accel_flat_meshes(accel->world) : accel->meshes};
     uint32_t chunks = chunk_count(accel->instance_count);
-    double spread_max = 0.0;
     threads_for(accel->params.threads, chunks, fill_chunk, &filling);
     for (uint32_t c = 0; c < chunks; ++c) {
         uint32_t i = posing->bad[c];
-        spread_max = fmax(spread_max, posing->spread[c]);
         if (i == UINT32_MAX)
             continue;
         const char *name = accel->scene->instances[i].name;
@@ -213,8 +229,6 @@ static whit_result instances_fill(const struct accel *accel, const struct scene_
                   accel->scene->name, i, text_token(name).text, pose->time_s);
         return WHIT_ERROR_INPUT;
     }
-    if (chunks > 0)
-        posing->instances[0].slack = float_above(spread_max * WIDENING);
     return WHIT_OK;
 }
 
@@ -266,6 +280,20 @@ static void subtree_refit(struct gpu_bvh_node *nodes, uint32_t node,
     }
 }
 
+/* Sets the margin that a ray brings to the boxes of the tree, by its origin: in the box of node 1,
+   beside the root, which no ray is tested against. */
+static void instances_slack(struct accel *accel)
+{
+    struct gpu_bvh_node *node = &accel->nodes[1];
+    struct spread max = {.own = {0}};
+    for (uint32_t c = 0; c < chunk_count(accel->instance_count); ++c)
+        spread_raise(&max, &accel->posing->spread[c]);
+    for (int i = 0; i < 3 && accel->instance_node_count > 1; ++i) {
+        node->lo[i] = float_above(max.own[i] * WIDENING);
+        node->hi[i] = float_above(max.others[i] * WIDENING);
+    }
+}
+
 static void instances_exchange(struct accel *accel)
 {
     struct gpu_instance *before = accel->instances;
@@ -302,6 +330,7 @@ static whit_result pose_instances(struct accel *accel, const struct scene_pose *
         return result;
     if (keep && posing->count > 0)
         subtree_refit(accel->nodes, 0, posing);
+    instances_slack(accel);
     posing->has_tree = true;
     instances_exchange(accel);
     accel->single_identity = accel->instance_count == 1 &&

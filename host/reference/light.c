@@ -61,7 +61,7 @@ static double end_before(const struct reference *reference, const struct scene_l
     double distance = d3_length(way), share = 1.0 / 4096.0;
     if (!scene_light_is_flat(light) && light->kind != WHIT_LIGHT_AREA_SAMPLE)
         return distance * (double)reference->end_shares[light - reference->pose.lights];
-    double rounding = (largest_size(p) + largest_size(way)) * 0x1p-20;
+    double rounding = (largest_size(p) + largest_size(way)) * 0x1p-16;
     return fmin(distance * share, rounding / fabs(cos_away));
 }
 

@@ -73,21 +73,25 @@ static inline void bound_ray_setup(struct ray_setup *ray)
 
 #define CLIP_MARGIN (1.0f / 524288.0f)
 
-static inline void widen_boxes(struct ray_setup *ray, float margin)
+static inline void widen_boxes(struct ray_setup *ray, struct vec3 margin)
 {
-    ray->above = vec3_add(ray->origin, vec3_make(margin, margin, margin));
-    ray->below = vec3_sub(ray->origin, vec3_make(margin, margin, margin));
+    ray->above = vec3_add(ray->origin, margin);
+    ray->below = vec3_sub(ray->origin, margin);
 }
 
 static inline void widen_ray_setup(struct ray_setup *ray, struct vec3 center, float reach)
 {
     float farthest = vec3_largest_magnitude(vec3_sub(ray->origin, center));
-    widen_boxes(ray, (farthest + reach) * CLIP_MARGIN);
+    float margin = (farthest + reach) * CLIP_MARGIN;
+    widen_boxes(ray, vec3_make(margin, margin, margin));
 }
 
-static inline void widen_world_setup(struct ray_setup *ray, float slack)
+static inline void widen_world_setup(struct ray_setup *ray, struct vec3 own, struct vec3 others)
 {
-    widen_boxes(ray, vec3_largest_magnitude(ray->origin) * slack);
+    float farthest = vec3_largest_magnitude(ray->origin);
+    widen_boxes(ray, vec3_make(fabsf(ray->origin.x) * own.x + farthest * others.x,
+                               fabsf(ray->origin.y) * own.y + farthest * others.y,
+                               fabsf(ray->origin.z) * own.z + farthest * others.z));
 }
 
 static inline void slab_axis(float lo, float hi, float inv_dir, bool negative, float *start,

@@ -387,7 +387,8 @@ static struct ray_setup ray_at(const struct walk *walk, uint32_t instance)
 static void traverse_instances(struct walk *walk, uint32_t root)
 {
     struct ray_setup world = world_ray(walk);
-    widen_world_setup(&world, walk->accel->instances[0].slack);
+    const struct gpu_bvh_node *slack = &walk->accel->nodes[1];
+    widen_world_setup(&world, vec3_load(slack->lo), vec3_load(slack->hi));
     uint32_t top = 0, ref = root;
     while (ref != REF_DONE) {
         while (is_inner(ref))

@@ -93,9 +93,8 @@ struct gpu_instance {
     gpu_float center_z;
     gpu_float reach; /* half the longest side of that box */
     gpu_uint root8;  /* ref of the mesh tree with eight children per node */
-    gpu_float slack; /* of instance 0: boxes of the tree over instances are widened by this, times
-                        the largest coordinate of the ray's origin */
     gpu_float pad1;
+    gpu_float pad2;
 };
 GPU_ASSERT_SIZE(gpu_instance, 128)
 GPU_ASSERT_AT(gpu_instance, root, 48)

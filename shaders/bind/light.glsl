@@ -116,11 +116,12 @@ float emitter_form_factor(gpu_light light, vec3 p, vec3 error, vec3 n)
 // The largest share of its length by which a shadow ray to an emitter ends before it.
 const float END_SHARE_MAX = 1.0 / 4096.0;
 
-// How far a point of an emitter may be from a surface in the same plane, and a hit of it: by
-// roundings of their coordinates. `way`: the largest component of the way from `p` to the point.
+// How far a point of an emitter may be from a hit of a surface in the same plane: more than the
+// roundings of their coordinates, and more than the margin of boxes of instances, so that rays do
+// not enter what they end before. `way`: the largest component of the way from `p` to the point.
 float plane_rounding(vec3 p, float way)
 {
-    return (max(abs(p.x), max(abs(p.y), abs(p.z))) + way) * (1.0 / 1048576.0);
+    return (max(abs(p.x), max(abs(p.y), abs(p.z))) + way) * (1.0 / 65536.0);
 }
 
 // Sample `index` of a light towards `p`. False: nothing arrives.

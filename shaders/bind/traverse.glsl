@@ -588,7 +588,9 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
                         uint skip_instance, uint skip_primitive, inout Hit hit)
 {
     RaySetup ray = make_ray_setup(origin, dir), local = ray;
-    widen_world_setup(ray, fetch_slack());
+    vec3 own, others;
+    fetch_slack(own, others);
+    widen_world_setup(ray, own, others);
     NodeStack stack = make_stack(0u, 0u), mesh_stack = stack;
     uint ref = root, mesh_ref = REF_DONE;
     bool inside = false;

@@ -83,10 +83,12 @@ float fetch_mesh_reach(uint instance)
     return uintBitsToFloat(fetch_instance_row(instance * INSTANCE_ROWS + 7u).x);
 }
 
-// gpu_instance.slack
-float fetch_slack()
+// The margin of rays in the tree over instances: see widen_world_setup. It stands in the box of node
+// 1, beside the root.
+void fetch_slack(out vec3 own, out vec3 others)
 {
-    return uintBitsToFloat(fetch_instance_row(7u).z);
+    own = row_vec3(fetch_node_row(2u));
+    others = row_vec3(fetch_node_row(3u));
 }
 
 // Rows times vector, written out, since lavapipe's mat3 * vec3 adds the products in another order,

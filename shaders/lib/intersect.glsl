@@ -61,7 +61,7 @@ RaySetup make_ray_setup(vec3 origin, vec3 dir)
 // its `reach`.
 const float CLIP_MARGIN = 1.0 / 524288.0;
 
-void widen_boxes(inout RaySetup ray, float margin)
+void widen_boxes(inout RaySetup ray, vec3 margin)
 {
     precise vec3 above = ray.origin + margin;
     precise vec3 below = ray.origin - margin;
@@ -75,18 +75,18 @@ void widen_ray_setup(inout RaySetup ray, vec3 center, float reach)
     float farthest = away.x > away.y ? away.x : away.y;
     farthest = away.z > farthest ? away.z : farthest;
     precise float margin = (farthest + reach) * CLIP_MARGIN;
-    widen_boxes(ray, margin);
+    widen_boxes(ray, vec3(margin));
 }
 
 // The margin of boxes in the tree over instances, whose rays are transformed below: the transform
-// of the origin and of the direction is rounded relative to the distance from the instance. See
-// gpu_instance.slack.
-void widen_world_setup(inout RaySetup ray, float slack)
+// of the origin and of the direction is rounded relative to the distance from the instance. `own`,
+// `others`: shares of the origin's coordinate on an axis, and of its largest one (fetch_slack).
+void widen_world_setup(inout RaySetup ray, vec3 own, vec3 others)
 {
     vec3 size = abs(ray.origin);
     float farthest = size.x > size.y ? size.x : size.y;
     farthest = size.z > farthest ? size.z : farthest;
-    precise float margin = farthest * slack;
+    precise vec3 margin = size * own + farthest * others;
     widen_boxes(ray, margin);
 }
 

@@ -287,7 +287,7 @@ mutation(boxes_near_denormals hard_tree RED keys_at_the_ends_of_floats_do_not_de
 change(host/twin/traverse.c enters [[bits -= NEAR_STEPS]] [[bits -= 0]])
 
 mutation(instances_without_slack accel_instance RED rays_from_far_away_enter_what_they_hit)
-change(host/accel/pose.c instances_fill [[spread_max \* WIDENING]] [[0.0]])
+change(host/accel/pose.c instances_slack [[max\.others\[i\] \* WIDENING]] [[0.0]])
 
 mutation(keys_unrounded_in_kernels render_numerics RED one_mesh)
 change(shaders/bind/settle.glsl [[bool loose = hit.lo < hit.hi;]] [[bool loose = false;]])
