@@ -84,15 +84,17 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATAD
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/shaders/examples
   DESTINATION ${CMAKE_INSTALL_DATADIR}/whit/shaders)
 # Documents and scenes refer to each other, and to the examples of shaders, by paths of a checkout.
-foreach(link docs scenes shaders)
-  set(from ${CMAKE_INSTALL_FULL_DOCDIR})
-  set(to ${CMAKE_INSTALL_FULL_DATADIR}/whit/${link})
-  if(link STREQUAL docs)
-    set(from ${CMAKE_INSTALL_FULL_DATADIR}/whit)
-    set(to ${CMAKE_INSTALL_FULL_DOCDIR}/docs)
+# What the folder has of that name stays.
+function(whit_install_link folder name to)
+  if(IS_ABSOLUTE "${folder}" OR IS_ABSOLUTE "${to}" OR "${folder}/${name}" STREQUAL "${to}")
+    return()
   endif()
-  file(RELATIVE_PATH target ${from} ${to})
-  file(RELATIVE_PATH from_prefix ${CMAKE_INSTALL_PREFIX} ${from})
-  install(CODE "file(CREATE_LINK ${target}
-    \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${from_prefix}/${link}\" SYMBOLIC)")
-endforeach()
+  file(RELATIVE_PATH target "/${folder}" "/${to}")
+  install(CODE "set(link \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${folder}/${name}\")
+    if(IS_SYMLINK \"\${link}\" OR NOT EXISTS \"\${link}\")
+      file(CREATE_LINK \"${target}\" \"\${link}\" SYMBOLIC)
+    endif()")
+endfunction()
+whit_install_link(${CMAKE_INSTALL_DATADIR}/whit docs ${CMAKE_INSTALL_DOCDIR}/docs)
+whit_install_link(${CMAKE_INSTALL_DOCDIR} scenes ${CMAKE_INSTALL_DATADIR}/whit/scenes)
+whit_install_link(${CMAKE_INSTALL_DOCDIR} shaders ${CMAKE_INSTALL_DATADIR}/whit/shaders)

@@ -2,7 +2,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "accel/accel.h"
+#include "accel/extent.h"
 #include "base/vec.h"
 #include "oracle/nearest.h"
 
@@ -129,29 +129,68 @@ static void visit_tree(struct query *q, uint32_t ref)
     }
 }
 
-double accel_distance(const struct accel *accel, const struct scene_pose *pose, const double p[3])
+/* Goes down the tree over instances, whose boxes are in world space. */
+static void visit_instances(struct query *q, const struct scene_pose *pose, uint32_t ref)
 {
-    struct query q = {
-        .accel = accel, .placed = affine_identity(), .p = {p[0], p[1], p[2]}, .best2 = DBL_MAX};
-    if (accel->flat)
-        visit_tree(&q, accel->meshes[0].root);
-    for (uint32_t i = 0; !accel->flat && i < accel->instance_count; ++i) {
-        const struct gpu_instance *instance = &accel->instances[i];
-        const struct accel_mesh *mesh = &accel->meshes[instance->mesh];
-        q.placed = pose->instances[i];
-        if (box_distance2(&q, mesh->box.lo, mesh->box.hi) < q.best2)
-            visit_tree(&q, instance->root);
+    if (ref == BVH_EMPTY_REF)
+        return;
+    if (ref >> BVH_COUNT_SHIFT) {
+        uint32_t instance = ref & BVH_FIRST_MASK;
+        q->placed = pose->instances[instance];
+        visit_tree(q, q->accel->instances[instance].root);
+        q->placed = affine_identity();
+        return;
     }
-    return q.best2 < DBL_MAX ? sqrt(q.best2) : INFINITY;
+    const struct gpu_bvh_node *pair = &q->accel->nodes[ref & BVH_FIRST_MASK];
+    double away2[2] = {box_distance2(q, pair[0].lo, pair[0].hi),
+                       box_distance2(q, pair[1].lo, pair[1].hi)};
+    bool second = away2[1] < away2[0];
+    for (int i = 0; i < 2; ++i) {
+        bool at = i ? !second : second;
+        if (away2[at] < q->best2)
+            visit_instances(q, pose, accel_node_ref(&pair[at]));
+    }
 }
 
-float accel_light_end_share(const struct accel *accel, const struct scene_pose *pose,
-                            const struct scene_light *light)
+/* The square of the distance to the nearest surface, or `most2` if that is not less. */
+static double distance2(const struct accel *accel, const struct scene_pose *pose, const double p[3],
+                        double most2)
 {
-    double rounding = 0.0;
-    if (light->kind != WHIT_LIGHT_POINT && light->kind != WHIT_LIGHT_SPOT)
+    struct query q = {
+        .accel = accel, .placed = affine_identity(), .p = {p[0], p[1], p[2]}, .best2 = most2};
+    if (accel->flat)
+        visit_tree(&q, accel->meshes[0].root);
+    else
+        visit_instances(&q, pose, accel->instance_root);
+    return q.best2;
+}
+
+double accel_distance(const struct accel *accel, const struct scene_pose *pose, const double p[3])
+{
+    double away2 = distance2(accel, pose, p, DBL_MAX);
+    return away2 < DBL_MAX ? sqrt(away2) : INFINITY;
+}
+
+/* Roundings of the coordinates of a light, and of a surface in which it lies. */
+static double rounding_of(const struct scene_pose *pose, const double position[3], double share)
+{
+    double largest = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        largest = fmax(largest, fabs(position[i]));
+        if (pose->lo[i] <= pose->hi[i])
+            largest = fmax(largest, fmax(fabs(pose->lo[i]), fabs(pose->hi[i])));
+    }
+    return largest * share;
+}
+
+float accel_light_end(const struct accel *accel, const struct scene_pose *pose,
+                      const struct scene_light *light)
+{
+    if (light->kind == WHIT_LIGHT_DIRECTIONAL)
         return 0.0f;
-    for (int i = 0; i < 3; ++i)
-        rounding = fmax(rounding, fabs(light->position[i]) * 0x1p-22);
-    return accel_distance(accel, pose, light->position) <= rounding ? 1.0f / 4096.0f : 0.0f;
+    if (light->kind != WHIT_LIGHT_POINT && light->kind != WHIT_LIGHT_SPOT)
+        return (float)rounding_of(pose, light->position, 0x1p-20);
+    double rounding = rounding_of(pose, light->position, 0x1p-23);
+    double most2 = nextafter(rounding * rounding, INFINITY);
+    return distance2(accel, pose, light->position, most2) < most2 ? 1.0f / 4096.0f : 0.0f;
 }

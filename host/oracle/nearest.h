@@ -8,10 +8,12 @@
    spheres that a transform stretches. Infinity in an empty scene. `pose` is the one that `accel`
    has. */
 double accel_distance(const struct accel *accel, const struct scene_pose *pose, const double p[3]);
-/* By which share of its length a shadow ray to a point or spot light ends before it. 0, but for a
-   light that lies in a surface, as a lamp in a ceiling: that surface casts no shadow, where
-   roundings would decide at each point whether it does. 0 for other kinds of lights. */
-float accel_light_end_share(const struct accel *accel, const struct scene_pose *pose,
-                            const struct scene_light *light);
+/* Where a shadow ray to a light ends before it, so that a surface in which the light lies, as a
+   lamp in a ceiling, casts no shadow: roundings would decide at each point whether it does. For a
+   point or spot light the share of the ray's length, 0 where the light is in no surface. For an
+   emitter how far off the surfaces in its plane may be, in world units; 0 for directional lights.
+ */
+float accel_light_end(const struct accel *accel, const struct scene_pose *pose,
+                      const struct scene_light *light);
 
 #endif

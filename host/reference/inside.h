@@ -30,7 +30,7 @@ struct reference {
     float *sky; /* octahedral map, RGBA; NULL: gradient */
     uint32_t sky_size;
     uint32_t light_samples;
-    float *end_shares; /* of each light: accel_light_end_share */
+    float *light_ends; /* of each light: accel_light_end */
     double bailout;
 };
 

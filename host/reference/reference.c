@@ -69,11 +69,11 @@ static bool fill_tables(struct reference *r)
     const struct scene *scene = r->scene;
     r->placings = array_alloc(r->pose.instance_count, sizeof *r->placings);
     r->alphas = array_alloc(scene->texture_count, sizeof *r->alphas);
-    r->end_shares = array_alloc(r->pose.light_count, sizeof *r->end_shares);
-    if (!r->placings || !r->alphas || !r->end_shares)
+    r->light_ends = array_alloc(r->pose.light_count, sizeof *r->light_ends);
+    if (!r->placings || !r->alphas || !r->light_ends)
         return false;
     for (uint32_t i = 0; i < r->pose.light_count; ++i)
-        r->end_shares[i] = accel_light_end_share(r->accel, &r->pose, &r->pose.lights[i]);
+        r->light_ends[i] = accel_light_end(r->accel, &r->pose, &r->pose.lights[i]);
     for (uint32_t i = 0; i < r->pose.instance_count; ++i) {
         r->placings[i].forward = r->pose.instances[i];
         if (!affine_invert(&r->pose.instances[i], &r->placings[i].inverse))
@@ -139,7 +139,7 @@ void reference_destroy(struct reference *r)
     free(r->placings);
     free(r->alphas);
     free(r->sky);
-    free(r->end_shares);
+    free(r->light_ends);
     free(r);
 }
 

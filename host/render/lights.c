@@ -72,8 +72,10 @@ whit_result lights_write(struct renderer *renderer)
         return render_no_memory(renderer, "lights");
     for (uint32_t i = 0; i < pose->light_count; ++i) {
         lights[i] = make_light(&pose->lights[i], lights_samples(renderer));
+        float end = accel_light_end(renderer->accel, pose, &pose->lights[i]);
+        lights[i].end = end;
         if (!scene_light_is_flat(&pose->lights[i]))
-            lights[i].share = accel_light_end_share(renderer->accel, pose, &pose->lights[i]);
+            lights[i].share = end;
     }
     whit_result result = buffer_write(renderer->scene_buffers.shading,
                                       (uint64_t)renderer->frame.light_row * ROW_BYTES, lights,

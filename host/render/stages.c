@@ -393,7 +393,7 @@ whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
     }
     if (chunk->block_count == 1) {
         log_error(&target->renderer->log,
-                  "there is no room for the rays of %d pixels: --depth is %u, --bailout %g",
+                  "there is no room for the rays of %d pixels at depth %u and bailout %g",
                   RENDER_BLOCK_PIXELS, target->renderer->params.depth,
                   target->renderer->params.bailout);
         return WHIT_ERROR_MEMORY;

@@ -17,7 +17,6 @@ void stats_clear(struct target *target)
                                  .general = before.general,
                                  .load_path = before.load_path};
     memset(target->timed, 0, sizeof target->timed);
-    material_shares_clear(target);
 }
 
 void renderer_get_stats(const struct renderer *renderer, whit_stats *stats)

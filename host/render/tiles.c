@@ -15,6 +15,7 @@
 #include "render/costs.h"
 #include "render/hooks.h"
 #include "render/lights.h"
+#include "render/material_shares.h"
 #include "render/pixels.h"
 #include "render/readback.h"
 #include "render/renderer.h"
@@ -432,6 +433,7 @@ whit_result render_all(struct renderer *renderer)
     if (result == WHIT_OK && !readback_is_late(renderer))
         result = make_images(renderer);
     stats_clear(&renderer->picture);
+    material_shares_clear(&renderer->picture);
     struct progress progress = render_progress(renderer);
     if (result == WHIT_OK)
         result = deferred_clear(&renderer->picture);

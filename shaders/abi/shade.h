@@ -115,10 +115,9 @@ struct gpu_light {
     gpu_float cos_inner;
     gpu_float cos_outer;
     gpu_uint two_sided; /* of emitters */
-    gpu_float share; /* of a flat emitter: area / (pi * light_samples); of a point or spot light:
-                        accel_light_end_share */
+    gpu_float share; /* of a flat emitter: area / (pi * light_samples); else accel_light_end */
     gpu_vec3 edge_u;
-    gpu_uint pad0;
+    gpu_float end; /* of a flat emitter: accel_light_end */
     gpu_vec3 edge_v;
     gpu_uint pad1;
 };

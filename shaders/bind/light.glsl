@@ -166,9 +166,10 @@ bool light_at(gpu_light light, uint index, vec3 p, out LightSample from)
     if (from.distance > light.range)
         return false;
     // Shortened: a surface in which the light lies, as a ceiling may be, casts no shadow.
-    if (flat_emitter || light.kind == LIGHT_AREA_SAMPLE)
-        from.distance -= min(from.distance * END_SHARE_MAX, plane_rounding(p, largest) / abs(cos_away));
-    else
+    if (flat_emitter || light.kind == LIGHT_AREA_SAMPLE) {
+        float off = max(flat_emitter ? light.end : light.share, plane_rounding(p, largest));
+        from.distance -= min(from.distance * END_SHARE_MAX, off / abs(cos_away));
+    } else
         from.distance -= from.distance * light.share;
     return max(from.arriving.r, max(from.arriving.g, from.arriving.b)) > 0.0;
 }

@@ -326,8 +326,17 @@ void enter_instance(const uint mode, uint instance)
     make_box_rays(mode);
 }
 
+// Raises packet_size where transforms to instances are rounded by more than BOUNDS_MARGIN of it.
+void widen_packets()
+{
+    vec3 own, others;
+    fetch_slack(own, others);
+    packet_size *= max(1.0, largest_size(own + others) / BOUNDS_MARGIN);
+}
+
 void packet_instances(const uint mode, float t_min, uint root)
 {
+    widen_packets();
     PacketBounds bounds = packet_bounds;
     uint ref = root, mesh_ref = REF_DONE, base = 0u;
     bool inside = false, lane_deferred = false, deferred = false;

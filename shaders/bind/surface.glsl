@@ -226,7 +226,7 @@ void take_footprint(inout Surface s, vec3 dir, float area)
     uint size = floatBitsToUint(max(edges.x, max(edges.y, edges.z))) & 0x7f800000u;
     float unit = uintBitsToFloat(0x7f000000u - size); // 1 / 2^e
     vec3 e1 = s.e1 * unit, e2 = s.e2 * unit;
-    area *= unit * unit;
+    area = area * unit * unit;
     vec3 along1 = cross(e2, dir), along2 = cross(dir, e1);
     float seen = dot(cross(e1, e2), dir);
     vec3 parts = vec3(dot(along1, along1), 2.0 * dot(along1, along2), dot(along2, along2));

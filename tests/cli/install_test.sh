@@ -56,6 +56,9 @@ check "the installed program runs" bin/whit --version
 check "a scene finds its schema" test -s share/whit/scenes/../docs/scene.schema.json
 check "a document finds scenes and shaders" test -s share/doc/whit/docs/../scenes/cube.json -a \
     -s share/doc/whit/shaders/examples/toon.glsl
+rm share/doc/whit/scenes && mkdir share/doc/whit/scenes && touch share/doc/whit/scenes/mine
+check "it installs again beside a folder of that name" quietly "$CMAKE" --install "$BUILD" --prefix "$OUT/prefix"
+check "which stays" test -e share/doc/whit/scenes/mine
 check "an installed scene has its map" quietly bin/whit scene share/whit/scenes/gallery/normal-map.json
 
 # Files for file managers: each MIME type that they name is known, by whit's own list or by shared-mime-info.

@@ -302,6 +302,37 @@ TEST(ceilings_hide_what_is_above_them)
     }
 }
 
+/* The vertices of a wide ceiling that is tilted are off its plane by roundings of their own. */
+TEST(wide_ceilings_hide_nothing_of_lamps_in_them)
+{
+    const double a = 0.5, across[3] = {cos(a), sin(a), 0};
+    const struct affine tilt = {
+        .m = {across[0], -across[1], 0, 0, across[1], across[0], 0, 3, 0, 0, 1, 0}};
+    for (int i = 0; i < 4; ++i) {
+        double sums[2];
+        for (int k = 0; k < 2; ++k) {
+            const whit_renderer_params params = {
+                .width = 40, .height = 30, .shadows = k ? WHIT_SHADOWS_NONE : WHIT_SHADOWS_TINTED};
+            struct scene *scene = dark_scene((double[]){0, 2, 0.1}, (double[]){0, 0, 0});
+            add_object(scene, mesh_plane(40), matte(1, 1, 1), 0, 0, 0);
+            scene_put(scene, mesh_plane(i % 2 ? 4000 : 40), &(struct put){.matrix = &tilt});
+            struct scene_light light = emitter(
+                WHIT_LIGHT_RECTANGLE, (double[]){0.1 * across[0], 3 + 0.1 * across[1], -0.3},
+                (double[]){0.3 * across[0], 0.3 * across[1], 0}, (double[]){0, 0, 0.3}, 9.0f);
+            if (i / 2) {
+                light.kind = WHIT_LIGHT_AREA_SAMPLE;
+                light.direction[0] = across[1];
+                light.direction[1] = -across[0];
+                light.falloff = true;
+            }
+            scene_put_light(scene, light);
+            own_image image = color_of(scene, NULL, &params);
+            sums[k] = red_sum(&image);
+        }
+        assert_near((float)sums[0], sums[1], 1e-6);
+    }
+}
+
 /* Hits of a glowing surface lie in the plane of the light that stands for it, but for rounding; the
    light must not light them. */
 TEST_BY_TURNS(emitters_do_not_light_themselves, 3, 4)

@@ -367,8 +367,12 @@ static void draw_versions(whit_renderer_params params, bool posts)
     whit_shader *before = load_version(0, posts);
     params.shader = before;
     params.reuse_rays = true;
+    params.time_stages = true;
     whit_renderer *renderer = renderer_of(&params);
+    whit_stats first, stats;
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    whit_renderer_get_stats(renderer, &first);
+    assert_true(first.share_count > 0 || !posts);
     for (size_t i = 1; i < VERSIONS; ++i) {
         whit_renderer *other;
         struct drawn in_place = {0}, alone = {0};
@@ -376,6 +380,8 @@ static void draw_versions(whit_renderer_params params, bool posts)
         params.shader = version;
         if (draw_in_place(renderer, &params, &in_place) != versions[i].anew)
             fail_msg("drawn anew or not: %s", versions[i].value);
+        whit_renderer_get_stats(renderer, &stats);
+        assert_true(!posts || stats.share_count == first.share_count);
         other = renderer_of(&params);
         draw_again(other, &alone);
         assert_same_picture(&in_place, &alone);

@@ -422,7 +422,8 @@ def _camera_of(camera):
 class Renderer:
     """Pictures of a scene. `device`: a Device, a selector of one, None, or CPU. `camera`: the name or number of one of
     the scene's, (eye, target, up, vertical degrees), or a dict of members of whit_camera, whose `own` is true where it
-    has more than a name. `samples` of a pixel. `progress`: called with the share done, 0 to 1. Further parameters are those of whit_renderer_params."""
+    has more than a name. `samples` of a pixel. `progress`: called with the share done, 0 to 1. Further parameters are
+    those of whit_renderer_params."""
 
     def __init__(self, scene, device=None, *, camera=None, samples=None, progress=None, **params):
         self.scene = scene

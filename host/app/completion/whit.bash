@@ -10,6 +10,6 @@ _whit() {
     fi
     COMPREPLY=()
     [ -z "$words" ] || mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
-    [ -n "${COMPREPLY[0]}" ] || mapfile -t COMPREPLY < <(compgen -f -- "$current")
+    [ -n "${COMPREPLY[0]-}" ] || mapfile -t COMPREPLY < <(compgen -f -- "$current")
 }
 complete -o filenames -F _whit whit
