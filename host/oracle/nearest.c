@@ -2,6 +2,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "abi/shade.h"
 #include "accel/extent.h"
 #include "base/vec.h"
 #include "oracle/nearest.h"
@@ -192,5 +193,6 @@ float accel_light_end(const struct accel *accel, const struct scene_pose *pose,
         return (float)rounding_of(pose, light->position, 0x1p-20);
     double rounding = rounding_of(pose, light->position, 0x1p-23);
     double most2 = nextafter(rounding * rounding, INFINITY);
-    return distance2(accel, pose, light->position, most2) < most2 ? 1.0f / 4096.0f : 0.0f;
+    return distance2(accel, pose, light->position, most2) < most2 ? (float)LIGHT_END_SHARE_MAX
+                                                                  : 0.0f;
 }

@@ -58,12 +58,12 @@ static double largest_size(struct dvec3 a)
 static double end_before(const struct reference *reference, const struct scene_light *light,
                          struct dvec3 p, struct dvec3 way, double cos_away)
 {
-    double distance = d3_length(way), share = 1.0 / 4096.0;
+    double distance = d3_length(way);
     double end = (double)reference->light_ends[light - reference->pose.lights];
     if (!scene_light_is_flat(light) && light->kind != WHIT_LIGHT_AREA_SAMPLE)
         return distance * end;
-    double off = fmax(end, (largest_size(p) + largest_size(way)) * 0x1p-16);
-    return fmin(distance * share, off / fabs(cos_away));
+    double off = fmax(end, (largest_size(p) + largest_size(way)) * LIGHT_END_ROUNDING);
+    return fmin(distance * LIGHT_END_SHARE_MAX, off / fabs(cos_away));
 }
 
 bool light_at(const struct tracer *tracer, const struct scene_light *light, uint32_t index,

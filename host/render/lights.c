@@ -55,7 +55,7 @@ static struct gpu_light make_light(const struct scene_light *light, uint32_t sam
     }
     if (scene_light_is_flat(light)) {
         out.falloff = true;
-        out.share = (float)(emitter_area(light) / (PI * samples));
+        out.area_share = (float)(emitter_area(light) / (PI * samples));
         for (int i = 0; i < 3; ++i) {
             out.edge_u[i] = (float)light->edge_u[i];
             out.edge_v[i] = (float)light->edge_v[i];
@@ -72,10 +72,7 @@ whit_result lights_write(struct renderer *renderer)
         return render_no_memory(renderer, "lights");
     for (uint32_t i = 0; i < pose->light_count; ++i) {
         lights[i] = make_light(&pose->lights[i], lights_samples(renderer));
-        float end = accel_light_end(renderer->accel, pose, &pose->lights[i]);
-        lights[i].end = end;
-        if (!scene_light_is_flat(&pose->lights[i]))
-            lights[i].share = end;
+        lights[i].end = accel_light_end(renderer->accel, pose, &pose->lights[i]);
     }
     whit_result result = buffer_write(renderer->scene_buffers.shading,
                                       (uint64_t)renderer->frame.light_row * ROW_BYTES, lights,

@@ -105,6 +105,10 @@ GPU_ASSERT_AT(gpu_texture, offset, 16)
 #define LIGHT_FLAT_BITS (1u << LIGHT_RECTANGLE | 1u << LIGHT_TRIANGLE)
 
 /* A light, in world space. */
+/* A shadow ray ends before its light by at most this share of its length; and before an emitter by
+   at least this share of the coordinates of its ends, divided by the cosine at the emitter. */
+#define LIGHT_END_SHARE_MAX (1.0 / 4096.0)
+#define LIGHT_END_ROUNDING  (1.0 / 65536.0)
 struct gpu_light {
     gpu_vec3 position;
     gpu_uint kind;
@@ -115,9 +119,9 @@ struct gpu_light {
     gpu_float cos_inner;
     gpu_float cos_outer;
     gpu_uint two_sided; /* of emitters */
-    gpu_float share; /* of a flat emitter: area / (pi * light_samples); else accel_light_end */
+    gpu_float end; /* where shadow rays end: see accel_light_end */
     gpu_vec3 edge_u;
-    gpu_float end; /* of a flat emitter: accel_light_end */
+    gpu_float area_share; /* of a flat emitter: area / (pi * light_samples) */
     gpu_vec3 edge_v;
     gpu_uint pad1;
 };

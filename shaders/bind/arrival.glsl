@@ -89,10 +89,10 @@ vec3 emitter_light(gpu_light light, Lit lit, EmitterSum sum, out vec3 open)
     if (!(sum.weight > 0.0))
         return open;
     float factor = emitter_form_factor(light, lit.p, vec3(lit.error), lit.ns);
-    float sampled = light.share * sum.weight;
+    float sampled = light.area_share * sum.weight;
     vec3 radiance = min(light.color, vec3(LIGHT_MAX));
     vec3 diffuse = lit.diffuse * (factor * (sum.visible / sum.weight));
-    vec3 highlight = sum.highlight * (light.share * min(factor / sampled, 1.0));
+    vec3 highlight = sum.highlight * (light.area_share * min(factor / sampled, 1.0));
     open = radiance * (lit.diffuse * factor);
     return radiance * (diffuse + highlight);
 }

@@ -41,7 +41,7 @@ struct LightSample {
     vec3 to_light; // unit
     float distance;
     vec3 arriving;  // irradiance over pi, facing the light, before shadows
-    float strength; // flat emitters: arriving = color * share * strength
+    float strength; // flat emitters: arriving = color * area_share * strength
 };
 
 bool is_flat(gpu_light light)
@@ -76,8 +76,9 @@ vec3 light_point(gpu_light light, uint index)
     return is_flat(light) ? emitter_point(light, index) : light.position;
 }
 
-// Emitters that are smaller than this share of their distance have the light of their middle: the
-// integral is off by the square of it, and its edge terms cancel to noise of 1e-6 by it.
+// The form factor of an emitter that is smaller than this share of its distance is that of its
+// middle, which is off by up to the square of the share. The sum of edge terms is off by roundings,
+// 1e-6 divided by the share.
 const float SMALL_EMITTER = 1.0 / 128.0;
 
 // Form factor of an emitter all of which is `away`, as polygon_form_factor gives it. `c0`: its first
@@ -113,15 +114,12 @@ float emitter_form_factor(gpu_light light, vec3 p, vec3 error, vec3 n)
     return front ? max(factor, 0.0) : light.two_sided != 0u ? max(-factor, 0.0) : 0.0;
 }
 
-// The largest share of its length by which a shadow ray to an emitter ends before it.
-const float END_SHARE_MAX = 1.0 / 4096.0;
-
 // How far a point of an emitter may be from a hit of a surface in the same plane: more than the
 // roundings of their coordinates, and more than the margin of boxes of instances, so that rays do
 // not enter what they end before. `way`: the largest component of the way from `p` to the point.
 float plane_rounding(vec3 p, float way)
 {
-    return (max(abs(p.x), max(abs(p.y), abs(p.z))) + way) * (1.0 / 65536.0);
+    return (max(abs(p.x), max(abs(p.y), abs(p.z))) + way) * LIGHT_END_ROUNDING;
 }
 
 // Sample `index` of a light towards `p`. False: nothing arrives.
@@ -160,17 +158,17 @@ bool light_at(gpu_light light, uint index, vec3 p, out LightSample from)
         from.arriving *= cos_emitter;
     if (flat_emitter) {
         from.strength = min(cos_emitter / square, LIGHT_MAX);
-        from.arriving = light.color * (light.share * from.strength);
+        from.arriving = light.color * (light.area_share * from.strength);
     }
     from.arriving = min(from.arriving, vec3(LIGHT_MAX));
     if (from.distance > light.range)
         return false;
     // Shortened: a surface in which the light lies, as a ceiling may be, casts no shadow.
     if (flat_emitter || light.kind == LIGHT_AREA_SAMPLE) {
-        float off = max(flat_emitter ? light.end : light.share, plane_rounding(p, largest));
-        from.distance -= min(from.distance * END_SHARE_MAX, off / abs(cos_away));
+        float off = max(light.end, plane_rounding(p, largest));
+        from.distance -= min(from.distance * LIGHT_END_SHARE_MAX, off / abs(cos_away));
     } else
-        from.distance -= from.distance * light.share;
+        from.distance -= from.distance * light.end;
     return max(from.arriving.r, max(from.arriving.g, from.arriving.b)) > 0.0;
 }
 

@@ -122,8 +122,9 @@ void size_rays(vec3 eye)
     packet_size = -min_of_lanes(least);
 }
 
-// The margin by which a box is widened: with widen_packets more than all roundings of its test, of transforms to
-// instances and of the tests of its contents, each a few 2^-24 of the coordinates that go into it.
+// The margin by which a box is widened: more than all roundings of its test, of transforms to
+// instances (by widen_packets) and of the tests of its contents, each a few 2^-24 of the coordinates
+// that go into it.
 // So widened, a box that a ray runs along is hit: with BOX_INVERSE_MAX in place of infinity, rays
 // miss a box only from 2^7 times its size away.
 float box_margin(vec3 lo, vec3 hi)

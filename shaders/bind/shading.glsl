@@ -70,16 +70,16 @@ gpu_light fetch_light(uint index)
     uvec4 r0 = fetch_shading_row(row), r1 = fetch_shading_row(row + 1u);
     uvec4 r2 = fetch_shading_row(row + 2u), r3 = fetch_shading_row(row + 3u);
     vec3 edge_u = vec3(0.0), edge_v = vec3(0.0);
-    float end = 0.0;
+    float area_share = 0.0;
     if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u) {
         uvec4 r4 = fetch_shading_row(row + 4u);
         edge_u = row_vec3(r4);
-        end = uintBitsToFloat(r4.w);
+        area_share = uintBitsToFloat(r4.w);
         edge_v = row_vec3(fetch_shading_row(row + 5u));
     }
     return gpu_light(row_vec3(r0), r0.w, row_vec3(r1), uintBitsToFloat(r1.w), row_vec3(r2), r2.w,
                      uintBitsToFloat(r3.x), uintBitsToFloat(r3.y), r3.z, uintBitsToFloat(r3.w),
-                     edge_u, end, edge_v, 0u);
+                     edge_u, area_share, edge_v, 0u);
 }
 
 uint triangle_rows_each()

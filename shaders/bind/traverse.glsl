@@ -166,8 +166,10 @@ const int NEAR_STEPS = 32;
 bool enters(float near, float far, float share, Hit hit)
 {
     if (SPEC_NUMERICS == NUMERICS_EXACT) {
-        int bits = floatBitsToInt(near) - NEAR_STEPS; // at least 0, unless the device flushes
-        near = intBitsToFloat(SPEC_INTERLEAVE != 0u ? bits : max(bits, 0)); // denormals
+        // `near` is at least the float with the bits NEAR_STEPS, a denormal: see step_siblings.
+        // Devices that are no CPU may have flushed it to 0.
+        int bits = floatBitsToInt(near) - NEAR_STEPS;
+        near = intBitsToFloat(SPEC_INTERLEAVE != 0u ? bits : max(bits, 0));
     }
     if (SPEC_NUMERICS == NUMERICS_WATERTIGHT && share != 0.0) {
         precise float lower = near - abs(near) * share;
