@@ -174,6 +174,7 @@ static void take_picture(const struct engine_task *task, enum engine_quality qua
     lane->place = engine->places;
     lane->quality = quality;
     lane->stale = !own;
+    lane->previewed = false;
     lane->timed = task->session->time_stages;
     lane->last = task->settings;
     lane->shown = frame->divisor;
@@ -225,6 +226,7 @@ void engine_show_preview(struct engine *engine, struct engine_job *job)
         lane->settings.paint != PAINT_COLOR || !settings_same(&lane->settings, &job->settings))
         return;
     take_picture(&task, ENGINE_QUICK, &job->preview);
+    lane->previewed = true;
     engine->yields = lane->frames;
     engine->yields_ms = whit_clock_ms() + YIELD_MS;
     job->preview = (struct engine_frame){0};

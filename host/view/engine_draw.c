@@ -9,10 +9,11 @@
 
 enum { ADAPTIVE_SAMPLES = 8 }; /* expected; they are 4 and more */
 static const double BUDGET_DEFAULT_MS = 1000.0 / 30.0;
-/* A picture takes 1.0 to 1.3 times as long in steps (1280x720: 34k, default and whitted 1.0 on an
-   AMD EPYC, 1.3, 1.1 and 1.02 on a Xeon). One of up to AT_ONCE_MS is drawn without them,
-   if something is shown already. */
-static const double AT_ONCE_MS = 600.0, STEPS_TAKE = 1.1;
+/* A picture takes 1.0 to 1.4 times as long in steps (1280x720: 34k 1.4, default 1.15, whitted 1.03
+   on an AMD EPYC, 1.3, 1.1 and 1.02 on a Xeon). One of up to AT_ONCE_MS is drawn without them,
+   if something is shown already; one of up to VERSION_AT_ONCE_MS after the first step of a new
+   version of a shader. */
+static const double AT_ONCE_MS = 600.0, VERSION_AT_ONCE_MS = 1300.0, STEPS_TAKE = 1.1;
 /* The bailout of small pictures while the camera moves: the rays that it cuts are hardly seen
    in enlarged pixels. At 213x120 default takes 0.82 of the time, with an RMSE of 0.0015. */
 static const double MOVING_BAILOUT = 1.0 / 64.0;
@@ -56,7 +57,8 @@ static uint32_t choose_step(const struct engine_lane *lane, bool first, uint32_t
     if (lane->moving || lane->settings.paint != PAINT_COLOR)
         return 0; /* steps exist for colours and aovs alone */
     double whole_ms = lane->pace.ms[0] * pixels_of(&lane->settings) * samples_of(&lane->settings);
-    if (!first && whole_ms > 0.0 && whole_ms <= AT_ONCE_MS)
+    double at_once_ms = lane->previewed ? VERSION_AT_ONCE_MS : AT_ONCE_MS;
+    if (!first && whole_ms > 0.0 && whole_ms <= at_once_ms)
         return 0; /* quick enough, and something is shown already */
     if (first && whole_ms <= 0.0)
         return spacing;

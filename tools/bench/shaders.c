@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/random.h"
 #include "bench/process.h"
 #include "bench/table.h"
 
@@ -90,20 +91,25 @@ struct saves {
     whit_shader_compiler *compiler;
     whit_log silent;
     char path[BENCH_PATH];
-    uint32_t number; /* number of the save */
+    uint64_t numbers; /* state of splitmix64 */
     double start_ms;
     whit_shader *looping[2];
     whit_renderer *renderers[2]; /* with fuel; trusted, without fuel */
     struct sample_runs loops[2], errors, tests;
 };
 
-/* Saves a version of the file. Its number is near 1, because the shape of `intersect` has to stay
-   in its box. */
+/* The next of numbers in [1, 17/16), since the shape of `intersect` has to stay in its box. Other
+   runs have others: the driver keeps kernels in files. */
+static double next_number(struct saves *s)
+{
+    return 1.0 + splitmix64_unit(&s->numbers) / 16.0;
+}
+
+/* Saves a version of the file. */
 static whit_result save(struct saves *s, const char *form)
 {
     char text[TEXT_BYTES];
-    double number = 1.0 + 1e-6 * ++s->number + 1e-10 * (double)((uint64_t)whit_clock_ms() % 9973);
-    snprintf(text, sizeof text, form, number); /* the format is from the tables above */
+    snprintf(text, sizeof text, form, next_number(s)); /* the format is from the tables above */
     s->start_ms = whit_clock_ms();
     return file_write_whole(&cli_log, s->path, text, strlen(text));
 }
@@ -470,11 +476,10 @@ static whit_result write_tests(struct saves *s)
     FILE *to = open_memstream(&text, &bytes);
     if (!to)
         return WHIT_ERROR_MEMORY;
-    s->number += TESTS * CHECKS_EACH;
     for (uint32_t i = 0; i < TESTS; ++i) {
         fprintf(to, "//@ test\nvoid t%u(uint seed)\n{\n    float x = float(seed);\n", i);
         for (uint32_t k = 0; k < CHECKS_EACH; ++k)
-            fprintf(to, "    check(x * %.9g >= x);\n", 1.0 + 1e-6 * (s->number - i * k));
+            fprintf(to, "    check(x * %.9g >= x);\n", next_number(s));
         fprintf(to, "}\n");
     }
     fprintf(to, "vec3 miss(vec3 dir) { return dir; }\n");
@@ -624,6 +629,7 @@ whit_result bench_shaders(struct bench *bench)
     if (!s)
         return WHIT_ERROR_MEMORY;
     s->bench = bench;
+    s->numbers = (uint64_t)time(NULL);
     bench_file(bench, "edited.glsl", s->path);
     table_begin(&table, bench, "shaders", heads, false,
                 count * (EDITS * count_rounds(s, false) + ask->runs));
