@@ -104,12 +104,7 @@ static double sky_max(const struct renderer *renderer)
         fmax(largest(frame->zenith), fmax(largest(frame->horizon), largest(frame->ground)));
     if (sky->kind != WHIT_ENVIRONMENT_MAP || frame->environment_size == 0)
         return max;
-    if (!sky->rgb)
-        return -1.0;
-    max = 0.0;
-    for (size_t i = 0; i < (size_t)sky->width * sky->height; ++i)
-        max = fmax(max, largest(&sky->rgb[3 * i]));
-    return max * largest(sky->scale);
+    return (double)sky->rgb_max * largest(sky->scale);
 }
 
 /* Upper bounds for a ray of weight 1. `radiance`: the sky's, or a surface's own light plus what its
@@ -131,7 +126,7 @@ static struct brought ray_max(const struct renderer *renderer, const uint8_t *wo
             passed = 1u << STATE_BOUNCES_SHIFT;
     }
     double arriving = arriving_max(renderer, highlights), sky = sky_max(renderer);
-    if (arriving < 0.0 || sky < 0.0)
+    if (arriving < 0.0)
         return (struct brought){-1.0, -1.0};
     double radiance = 0.0, hits = 0.0;
     for (uint32_t level = 0; level <= renderer->params.depth; ++level) {

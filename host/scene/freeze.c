@@ -455,8 +455,11 @@ static void check_environment(struct scene *scene)
     if (!(scene->contact >= 0.0f && isfinite(scene->contact)))
         scene->contact = 0.0f;
     size_t floats = sky->rgb ? (size_t)sky->width * sky->height * 3 : 0;
-    for (size_t i = 0; i < floats; ++i)
+    sky->rgb_max = 0.0f;
+    for (size_t i = 0; i < floats; ++i) {
         count += mend(&sky->rgb[i], 0.0f, huge, 0.0f);
+        sky->rgb_max = fmaxf(sky->rgb_max, sky->rgb[i]);
+    }
     if (count)
         scene_note(scene, SCENE_NOTE_WARNING,
                    "environment: %u values not finite or negative were mended", count);

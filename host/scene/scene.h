@@ -228,8 +228,9 @@ struct scene_environment {
     float zenith[3], horizon[3], ground[3];
     float scale[3]; /* factor on map or gradient */
     uint32_t width, height;
-    float *rgb; /* width * height * 3, or NULL */
-    char *name; /* file of the map */
+    float *rgb;    /* width * height * 3, or NULL */
+    float rgb_max; /* of rgb; set by scene_freeze, kept by scene_drop_pictures */
+    char *name;    /* file of the map */
     bool made_by_whit;
 };
 

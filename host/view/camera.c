@@ -49,9 +49,24 @@ static struct frame frame_of(const struct view_camera *camera)
     return f;
 }
 
-/* Turns a direction by the angles, but not beyond STEEPEST. */
-static void turn(const struct view_camera *camera, double look[3], double right, double up)
+/* Makes y the up axis of a view along it, whose direction `look` becomes as steep as turning
+   allows. */
+static void stand_up(struct view_camera *camera, double look[3])
 {
+    double size = double3_length(look), side = look[1] < 0.0 ? 1.0 : -1.0;
+    if (!camera->along_y)
+        return;
+    for (int i = 0; i < 3; ++i)
+        look[i] =
+            STEEPEST * look[i] + sqrt(1.0 - STEEPEST * STEEPEST) * size * side * camera->up[i];
+    memcpy(camera->up, (const double[3]){0.0, 1.0, 0.0}, sizeof camera->up);
+    camera->along_y = false;
+}
+
+/* Turns a direction by the angles, but not beyond STEEPEST. */
+static void turn(struct view_camera *camera, double look[3], double right, double up)
+{
+    stand_up(camera, look);
     double axis[3], side[3], tilted[3];
     memcpy(axis, camera->up, sizeof axis);
     normalize(axis);
@@ -165,6 +180,7 @@ void camera_along(struct view_camera *camera, int axis, int from)
         camera->eye[i] = camera->target[i] + (i == axis ? from * distance : 0.0);
         camera->up[i] = i == (axis == 1 ? 2 : 1) ? (axis == 1 ? -from : 1.0) : 0.0;
     }
+    camera->along_y = axis == 1;
 }
 
 void camera_to_text(const struct view_camera *camera, char *text, size_t text_bytes)
@@ -183,6 +199,7 @@ bool camera_from_text(const char *text, struct view_camera *camera)
     memcpy(camera->target, read.target, sizeof camera->target);
     memcpy(camera->up, read.up, sizeof camera->up);
     camera->fov_y_degrees = read.fov_y_degrees;
+    camera->along_y = false;
     double side[3], look[3];
     for (int i = 0; i < 3; ++i)
         look[i] = read.target[i] - read.eye[i];

@@ -9,6 +9,7 @@
 struct view_camera {
     double eye[3], target[3], up[3]; /* eye != target; up is not parallel to target - eye */
     double fov_y_degrees;
+    bool along_y; /* `up` is for this view alone: turning it goes on about y */
 };
 
 /* Moves the target along the view to where the middle of these bounds lies beside it; at least a

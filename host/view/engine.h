@@ -80,7 +80,8 @@ struct engine_frame {
     double scale;         /* scale of a heat map */
     whit_box *boxes;      /* those that settings.boxes asks for, ENGINE_BOXES_MAX at most */
     uint64_t boxes_total; /* number of all boxes */
-    whit_stats stats;
+    whit_stats stats;     /* of one sample where samples were added by refining */
+    whit_stats all;       /* if `refined`: of all samples */
     double visits;        /* mean nodes that a camera ray opens; < 0: not known */
     uint64_t visits_rays; /* number of rays in this mean */
     whit_accel_info accel;

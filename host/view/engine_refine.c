@@ -56,7 +56,7 @@ static void begin(struct engine_refine *refine, const struct engine_frame *frame
         return;
     set_base(refine, frame);
     refine->samples = frame->samples;
-    refine->begun_ms = frame->stats.render_ms;
+    refine->begun = frame->stats;
     refine->ended = frame->samples * ROUND > WHIT_SAMPLES_MAX;
 }
 
@@ -98,8 +98,10 @@ static void note_estimate(struct engine_refine *refine, const whit_refine_info *
     if (info->error < 0.0 || known || count == ENGINE_ESTIMATES_MAX)
         return;
     whit_refine_get_stats(refine->refine, &stats);
-    refine->estimates[refine->estimate_count++] = (struct engine_estimate){
-        .samples = info->samples, .error = info->error, .ms = refine->begun_ms + stats.render_ms};
+    refine->estimates[refine->estimate_count++] =
+        (struct engine_estimate){.samples = info->samples,
+                                 .error = info->error,
+                                 .ms = refine->begun.render_ms + stats.render_ms};
 }
 
 /* Draws the next part, and then sets the renderer back to the picture of the settings. */
@@ -144,6 +146,20 @@ static whit_result read_sum(const struct engine_refine *refine, const struct eng
     return result;
 }
 
+/* The statistics of all samples: of the picture that refining began with, and of what it drew.
+   Figures that are no sums are taken from refining, which has them for all samples. */
+static void sum_stats(const struct engine_refine *refine, whit_stats *stats)
+{
+    whit_stats sum;
+    *stats = refine->begun;
+    whit_refine_get_stats(refine->refine, &sum);
+    whit_stats_add(&sum, stats);
+    stats->bailout_bound = sum.bailout_bound;
+    stats->weight_cut_bailout = sum.weight_cut_bailout;
+    stats->weight_cut_depth = sum.weight_cut_depth;
+    memcpy(stats->pixels_by_samples, sum.pixels_by_samples, sizeof stats->pixels_by_samples);
+}
+
 /* Puts the mean of all samples into *frame, also as displayed. `kept`: the picture that refining
    began with; the session's renderer is set to its view. */
 static whit_result show_sum(const struct engine_refine *refine, const struct engine_kept *kept,
@@ -166,6 +182,7 @@ static whit_result show_sum(const struct engine_refine *refine, const struct eng
     frame->rgba = rgba;
     frame->samples = info.samples;
     frame->refined = true;
+    sum_stats(refine, &frame->all);
     frame->estimate_count = refine->estimate_count;
     memcpy(frame->estimates, refine->estimates, sizeof frame->estimates);
     return WHIT_OK;
@@ -264,21 +281,6 @@ static whit_result draw_missing(const struct engine_task *task)
     return result;
 }
 
-/* Adds the statistics of the samples that refining drew to those of the first samples, which the
-   picture kept. Figures that are no sums are taken from refining, which has them for all
-   samples. */
-static void sum_stats(const struct engine_task *task, whit_stats *stats)
-{
-    whit_stats sum;
-    *stats = task->single->stats;
-    whit_refine_get_stats(task->refine->refine, &sum);
-    whit_stats_add(&sum, stats);
-    stats->bailout_bound = sum.bailout_bound;
-    stats->weight_cut_bailout = sum.weight_cut_bailout;
-    stats->weight_cut_depth = sum.weight_cut_depth;
-    memcpy(stats->pixels_by_samples, sum.pixels_by_samples, sizeof stats->pixels_by_samples);
-}
-
 whit_result engine_refine_whole(const struct engine_task *task, struct engine_frame *frame)
 {
     const struct engine_kept *single = task->single;
@@ -288,7 +290,7 @@ whit_result engine_refine_whole(const struct engine_task *task, struct engine_fr
     frame->ids = result == WHIT_OK ? whit_image_share(single->ids) : NULL;
     frame->refined = false;
     if (result == WHIT_OK)
-        sum_stats(task, &frame->stats);
+        frame->stats = frame->all;
     return result;
 }
 

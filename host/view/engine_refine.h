@@ -11,7 +11,7 @@ struct engine_task;
 /* A picture to which samples are added; used by the drawing thread. */
 struct engine_refine {
     struct engine_frame base; /* copy of the frame that refining began with; owns nothing */
-    double begun_ms;          /* time that drawing `base` took */
+    whit_stats begun;         /* of that frame */
     uint32_t samples;    /* samples a pixel of the picture displayed last; 0: nothing to refine */
     bool settled;        /* more samples change nothing visible */
     bool ended;          /* there are no more samples, or drawing them failed */

@@ -78,7 +78,6 @@ struct view_event {
     enum view_event_kind kind;
     int key;       /* enum view_key, or a character */
     bool down;     /* keys and buttons */
-    bool repeat;   /* repeated, as the key is held */
     unsigned mods; /* EVENT_SHIFT and others, or-ed */
     int button;    /* 0 left, 1 right, 2 middle */
     uint32_t code; /* EVENT_CHAR: Unicode */

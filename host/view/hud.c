@@ -14,7 +14,10 @@
 
 const char *const hud_names[HUD_COUNT] = {"off", "small", "full"};
 
-static const float ROOM_FOR_BOTH = 400.0f; /* height of figures and a panel below them, pixels */
+/* Height of figures and a panel below them, and of a panel alone, pixels. */
+static const float ROOM_FOR_BOTH = 400.0f, ROOM_FOR_PANEL = 220.0f;
+/* A window of less width or height has one opened panel at a time. */
+static const float ROOM_FOR_PANELS_X = 900.0f, ROOM_FOR_PANELS_Y = 600.0f;
 
 void hud_quality(const struct view *view, char text[HUD_QUALITY_BYTES])
 {
@@ -229,7 +232,10 @@ static void draw_change(const struct view *view)
     }
     draw_change_ms(c);
     if (c->difference.other_ids == 0 && c->difference.other_colors == 0) {
-        ui_text_color(UI_COLOR_GOOD, c->has_colors ? "same picture" : "same hits");
+        bool exposes = strstr(c->what, "exposure ") != NULL;
+        ui_text_color(UI_COLOR_GOOD, !c->has_colors ? "same hits"
+                                     : exposes      ? "same radiance, displayed by another exposure"
+                                                    : "same picture");
         return;
     }
     ui_text_color(c->difference.other_ids ? UI_COLOR_WARNING : UI_COLOR_GOOD,
@@ -247,7 +253,9 @@ static void draw_change(const struct view *view)
 /* Whether the window is too low for figures and a panel. */
 static bool is_low(const struct view *view)
 {
-    return (float)view->settings.picture.height < ROOM_FOR_BOTH * ui_scale(view->ui);
+    float height = (float)view->settings.picture.height, scale = ui_scale(view->ui);
+    return view->crowd.low || height < ROOM_FOR_BOTH * scale ||
+           height - ui_panel_height("figures") < ROOM_FOR_PANEL * scale;
 }
 
 static bool holds_panel(const struct view *view)
@@ -262,7 +270,7 @@ static void draw_hud(const struct view *view)
     if (view->hud == HUD_OFF || view->frame.number == 0 || (is_low(view) && holds_panel(view)))
         return;
     if (ui_panel_begin("figures", 0.0f, 0.0f,
-                       view->hud == HUD_FULL ? UI_PANEL_STAYS : UI_PANEL_PLAIN)) {
+                       view->hud == HUD_FULL && !view->open ? UI_PANEL_STAYS : UI_PANEL_PLAIN)) {
         draw_figures(view);
         draw_names(view);
         draw_quality(view);
@@ -431,7 +439,7 @@ static void draw_messages(struct view *view)
     view->shaders.errors_drawn = 0;
     if (!toast && !error && !hint)
         return;
-    if (ui_panel_begin("messages", 0.0f, 1.0f, UI_PANEL_STAYS)) {
+    if (ui_panel_begin("messages", 0.0f, 1.0f, error ? UI_PANEL_STAYS : UI_PANEL_PLAIN)) {
         if (error)
             draw_errors(view);
         if (toast)
@@ -502,9 +510,53 @@ static void draw_legends(const struct view *view)
     }
 }
 
+/* The opened panels of the window, as bits. Settings and effects close each other. */
+enum { OPEN_PANELS = 1, OPEN_PIXEL = 2, OPEN_PRICES = 4 };
+
+/* Leaves only the panel that was opened last in a window without room for more. */
+static void leave_one_open(struct view *view)
+{
+    const whit_renderer_params *p = &view->settings.picture;
+    float scale = ui_scale(view->ui);
+    bool small =
+        (float)p->width < ROOM_FOR_PANELS_X * scale || (float)p->height < ROOM_FOR_PANELS_Y * scale;
+    unsigned open = (holds_panel(view) ? OPEN_PANELS : 0u) | (view->picked ? OPEN_PIXEL : 0u) |
+                    (view->prices_open ? OPEN_PRICES : 0u);
+    unsigned opened = open & ~view->open;
+    if (small && opened && open != opened) {
+        if (open & ~opened & OPEN_PIXEL)
+            view->picked = false;
+        if (open & ~opened & OPEN_PRICES)
+            price_switch(view);
+        if (open & ~opened & OPEN_PANELS) {
+            view->panels.settings = false;
+            if (view->panels.effects)
+                panels_switch_effects(view);
+        }
+        open = opened;
+    }
+    view->open = open;
+}
+
+/* Figures that left no room for an opened panel stay away until something else is asked for. */
+static void note_crowd(struct view *view)
+{
+    const whit_renderer_params *p = &view->settings.picture;
+    const struct view_crowd now = {ui_is_crowded(view->ui), view->open, (uint32_t)view->hud,
+                                   p->width, p->height};
+    struct view_crowd *was = &view->crowd;
+    bool same = was->open == now.open && was->hud == now.hud && was->width == now.width &&
+                was->height == now.height;
+    bool low = same ? was->low || now.low : now.low;
+    view->dirty |= low && !was->low;
+    *was = now;
+    was->low = low;
+}
+
 /* In order of importance: a panel that comes later gives way to earlier ones, or is left out. */
 void hud_draw(struct view *view)
 {
+    leave_one_open(view);
     if (view->help) {
         draw_messages(view);
         draw_help(view);
@@ -523,4 +575,5 @@ void hud_draw(struct view *view)
     draw_boxes(view);
     if (!is_low(view))
         panels_draw(view);
+    note_crowd(view);
 }

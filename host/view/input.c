@@ -26,13 +26,15 @@ static bool flies(const struct view_event *event)
 
 static void on_key(struct view *view, const struct view_event *event)
 {
-    if (event->key >= 0 && event->key < KEYS_MAX)
+    bool known = event->key >= 0 && event->key < KEYS_MAX;
+    bool held = known && event->down && view->input.down[event->key];
+    if (known)
         view->input.down[event->key] = event->down;
     ui_key_event(view->ui, event->key, event->down);
     view->dirty |= ui_has_keys(view->ui);
     if (!event->down || ui_has_keys(view->ui) || flies(event))
         return;
-    if (key_act(view, event->key, event->mods))
+    if (key_act(view, event->key, event->mods, held))
         view->dirty = true;
 }
 

@@ -303,7 +303,7 @@ static void save_picture(struct view *view)
                                    .scene = frame->scene->scene,
                                    .shader = frame->shader ? frame->shader->shader : NULL,
                                    .device = &frame->device,
-                                   .stats = &frame->stats};
+                                   .stats = frame->refined ? &frame->all : &frame->stats};
     if (view->params->save && view->params->save(view->params->save_user, &shot, path) == WHIT_OK)
         view_say(view, "saved as %s", path);
     else
@@ -511,13 +511,15 @@ bool key_state(const struct view *view, const struct key_binding *key, char *tex
     return key->setting || key->state;
 }
 
-bool key_act(struct view *view, int key, unsigned mods)
+bool key_act(struct view *view, int key, unsigned mods, bool held)
 {
     uint32_t count;
     const struct key_binding *keys = key_bindings(&count);
     for (uint32_t i = 0; i < count; ++i) {
         if (keys[i].key != key || keys[i].mods != mods)
             continue;
+        if (held && !keys[i].setting && !keys[i].turn)
+            return true;
         if (keys[i].setting)
             choice_turn(&view->settings, keys[i].setting, keys[i].by);
         else if (keys[i].turn)

@@ -30,7 +30,8 @@ struct key_binding {
 const struct key_binding *key_bindings(uint32_t *count);
 /* Writes the state of a key; false: it has none. */
 bool key_state(const struct view *view, const struct key_binding *key, char *text, size_t bytes);
-/* Does what the key does; false: nothing. */
-bool key_act(struct view *view, int key, unsigned mods);
+/* Does what the key does; false: nothing. `held`: the key was down already, which only
+   turns settings and scenes on. */
+bool key_act(struct view *view, int key, unsigned mods, bool held);
 
 #endif

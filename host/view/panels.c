@@ -273,11 +273,12 @@ static void draw_price_of(struct view *view, uint32_t index, bool in, bool can)
         draw_price(&price);
     else if (state.finished || !in)
         ui_text_dim("press to measure");
-    else
-        /* As many lines as the price will have, so that nothing moves under the mouse. */
-        ui_text_dim("%s%s",
-                    strcmp(state.what, whit_effect_name(index)) == 0 ? "measuring" : "to come",
-                    prices_are_short() ? "" : "\n");
+    else {
+        bool now = strcmp(state.what, whit_effect_name(index)) == 0;
+        ui_text_dim("%s", now ? "measuring" : "to come");
+        if (!prices_are_short()) /* as many lines as the price will have, so that nothing moves */
+            ui_text_dim(" ");
+    }
 }
 
 /* Characters that the columns of effects and prices take at most, and the column of reasons. */

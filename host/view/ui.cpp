@@ -108,6 +108,7 @@ enum { PANELS_MAX = 24, ITEMS_MAX = 128, AGAIN_MAX = 8 };
 struct panel {
     char title[32];
     ImVec2 size, at; // in the last frame that it was in
+    ImVec2 content;  // what it had then; its size follows that in the next frame
     int frame;       // number of that frame
     bool cut;        // part of it is beyond its right side
     bool holds;      // it takes the mouse
@@ -120,6 +121,8 @@ static struct {
     int obstacles[PANELS_MAX], obstacle_count;
     panel kept_free; // area that later panels avoid; without a size: none
     bool changed, wraps;
+    bool grows;                 // the current panel takes its size from its content
+    bool crowded;               // an opened panel covers another for want of room
     bool has_menu, closes_menu; // a list of choices is open; it is to be closed
     bool had_menu;              // has_menu of the frame before
     int again;
@@ -189,6 +192,12 @@ static ImVec2 free_place(ImVec2 at, const ImVec2 &size, float y, const ImVec2 &o
     return outside ? otherwise : at; // no room: the window is small
 }
 
+// The least height of a panel that scrolls.
+static float lowest()
+{
+    return 70.0f * line_scale;
+}
+
 // The height available at `at` for a panel of this width: down to the next panel below or to the
 // window's end, but never less than a minimum.
 static float room_below(const ImVec2 &at, float width)
@@ -200,16 +209,17 @@ static float room_below(const ImVec2 &at, float width)
         if (!beside && p.at.y >= at.y && p.at.y - gap() < end)
             end = p.at.y - gap();
     }
-    float min = 70.0f * line_scale;
-    return end - at.y > min ? end - at.y : min;
+    return end - at.y > lowest() ? end - at.y : lowest();
 }
 
-static void note_panel(int index, bool holds)
+static void note_panel(int index, bool holds, const ImVec2 &content)
 {
     panel &p = layout.panels[index];
     ImVec2 size = ImGui::GetWindowSize(), at = ImGui::GetWindowPos();
-    bool same = p.size.x == size.x && p.size.y == size.y && p.at.x == at.x && p.at.y == at.y;
+    bool same = p.size.x == size.x && p.size.y == size.y && p.at.x == at.x && p.at.y == at.y &&
+                p.content.x == content.x && p.content.y == content.y;
     layout.changed |= !same || p.frame != layout.frame - 1;
+    p.content = content;
     p.size = size;
     p.at = at;
     p.cut = ImGui::GetScrollMaxX() > 0.0f;
@@ -454,7 +464,8 @@ void ui_character(struct ui *, uint32_t code_point)
 bool ui_has_mouse(const struct ui *)
 {
     ImVec2 mouse = ImGui::GetIO().MousePos;
-    bool over = ImGui::GetIO().WantCaptureMouse || layout.has_menu;
+    bool drags = ImGui::IsAnyItemActive() && ImGui::IsAnyMouseDown();
+    bool over = drags || layout.has_menu || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
     for (int i = 0; i < layout.obstacle_count; ++i) {
         const panel &p = layout.panels[layout.obstacles[i]];
         over |= p.holds && mouse.x >= p.at.x && mouse.y >= p.at.y && mouse.x < p.at.x + p.size.x &&
@@ -482,7 +493,7 @@ bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
     ImGuiIO &io = ImGui::GetIO();
     io.DisplaySize = ImVec2((float)width, (float)height);
     io.DeltaTime = seconds > 1e-4 ? (float)seconds : 1e-4f;
-    layout.changed = false;
+    layout.changed = layout.crowded = false;
     for (int i = 0; i < 3; ++i) {
         io.MouseDown[i] = ui->pressed[i] || ui->down[i];
         layout.changed |= io.MouseDown[i] != ui->down[i]; // the release needs another frame
@@ -511,6 +522,16 @@ bool ui_end(struct ui *ui)
 bool ui_wants_again(const struct ui *)
 {
     return layout.again > 0 && layout.again < AGAIN_MAX;
+}
+
+bool ui_is_crowded(const struct ui *)
+{
+    return layout.crowded;
+}
+
+float ui_panel_height(const char *title)
+{
+    return layout.panels[find_panel(title)].size.y;
 }
 
 float ui_scale(const struct ui *ui)
@@ -552,16 +573,26 @@ static void place(float x, float y, ImGuiCond when)
                             when, ImVec2(x, y));
 }
 
-// Places a panel beside earlier ones; a plain one is moved to NOWHERE if there is no room.
-static void place_beside(const ImVec2 &size, float x, float y, enum ui_panel kind)
+// The corner of the window for a panel of this size.
+static ImVec2 anchor_of(const ImVec2 &size, float x, float y)
 {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
-    const ImVec2 anchor(inside() + x * (window.x - 2.0f * inside() - size.x),
-                        inside() + y * (window.y - 2.0f * inside() - size.y));
+    return ImVec2(inside() + x * (window.x - 2.0f * inside() - size.x),
+                  inside() + y * (window.y - 2.0f * inside() - size.y));
+}
+
+// Places a panel beside earlier ones; a plain one is moved to the other end of the window, or to
+// NOWHERE, if there is no room.
+static void place_beside(const ImVec2 &size, float x, float y, enum ui_panel kind)
+{
+    const ImVec2 anchor = anchor_of(size, x, y);
     bool stays = (kind & (UI_PANEL_HOLD | UI_PANEL_STAYS)) != 0;
-    ImVec2 at = free_place(anchor, kind & UI_PANEL_HOLD ? ImVec2(size.x, 0.0f) : size, y,
-                           stays ? anchor : NOWHERE);
-    float height = kind & UI_PANEL_HOLD ? room_below(at, size.x) : 1e6f;
+    float height = kind & UI_PANEL_HOLD && size.y > lowest() ? lowest() : size.y;
+    ImVec2 at = free_place(anchor, ImVec2(size.x, height), y, stays ? anchor : NOWHERE);
+    if (at.x == NOWHERE.x)
+        at = free_place(anchor_of(size, x, 1.0f - y), size, 1.0f - y, NOWHERE);
+    layout.crowded |= (kind & UI_PANEL_HOLD) && obstacle_of(at, ImVec2(size.x, height));
+    height = kind & UI_PANEL_HOLD ? room_below(at, size.x) : 1e6f;
     ImGui::SetNextWindowPos(at);
     ImGui::SetNextWindowSizeConstraints(ImVec2(0.0f, 0.0f), ImVec2(panel_width(), height));
 }
@@ -580,6 +611,8 @@ bool ui_panel_begin(const char *title, float x, float y, enum ui_panel kind)
     bool open = ImGui::Begin(title, nullptr, flags);
     if (layout.wraps)
         ImGui::PushTextWrapPos(panel_width() - ImGui::GetStyle().WindowPadding.x);
+    layout.grows = true;
+    ImGui::BeginGroup(); // its size is that of the content
     return open;
 }
 
@@ -589,7 +622,7 @@ bool ui_window_begin(const char *title, float x, float y, float width, float hei
     int flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                 ImGuiWindowFlags_HorizontalScrollbar;
     layout.current = find_panel(title);
-    layout.wraps = false;
+    layout.wraps = layout.grows = false;
     place(x, y, moves ? ImGuiCond_Always : ImGuiCond_Appearing);
     ImVec2 window = ImGui::GetIO().DisplaySize;
     float w = width * line_scale, h = height * line_scale, high = window.y - 2.0f * inside();
@@ -612,7 +645,12 @@ void ui_panel_end(void)
     if (layout.wraps)
         ImGui::PopTextWrapPos();
     layout.wraps = false;
-    note_panel(layout.current, holds);
+    ImVec2 content(0.0f, 0.0f);
+    if (layout.grows) {
+        ImGui::EndGroup();
+        content = ImGui::GetItemRectSize();
+    }
+    note_panel(layout.current, holds, content);
     ImGui::End();
 }
 

@@ -48,6 +48,10 @@ bool ui_end(struct ui *ui);
    button that it drew as down is up already. */
 bool ui_wants_again(const struct ui *ui);
 float ui_scale(const struct ui *ui);
+/* Whether a panel that takes the mouse had no room beside earlier ones, since ui_begin. */
+bool ui_is_crowded(const struct ui *ui);
+/* The height that the panel had when it was last drawn, pixels; 0: it was not. */
+float ui_panel_height(const char *title);
 /* For tests: the label, up to "##", and the middle of the button or other item number `index` of
    the last frame; false: there are fewer items. */
 bool ui_item(uint32_t index, const char **label, float *x, float *y);

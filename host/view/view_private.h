@@ -71,6 +71,12 @@ struct view {
     struct prices *leaving[LEAVING_MAX]; /* told to stop, not ended yet */
     struct wish wish;
     bool prices_open;
+    unsigned open; /* the opened panels when the window was last drawn: hud.c */
+    struct view_crowd {
+        bool low; /* there is no room for figures beside opened panels, with what follows */
+        unsigned open;
+        uint32_t hud, width, height;
+    } crowd;
 
     struct palette palette;
     struct compare compare;

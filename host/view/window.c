@@ -97,22 +97,28 @@ static unsigned mods_from_glfw(int mods)
            (mods & GLFW_MOD_CONTROL ? EVENT_CTRL : 0u) | (mods & GLFW_MOD_ALT ? EVENT_ALT : 0u);
 }
 
-/* Letters and signs by what is printed on their keys, for any keyboard layout. */
+/* Letters and signs by what is printed on their keys, for any keyboard layout. Keys of digits are
+   these digits also where they print others (French), unless the sign has a use; `+` is `=`. */
 static int printed_key(int key, int scancode)
 {
     const char *name = glfwGetKeyName(key, scancode);
     if (!name || !name[0] || name[1])
         return key;
+    if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9 && !strchr("-=[]\\", name[0]))
+        return key;
+    if (name[0] == '+')
+        return '=';
     return name[0] >= 'a' && name[0] <= 'z' ? name[0] - 'a' + 'A' : name[0];
 }
 
 static void on_key(GLFWwindow *glfw, int key, int scancode, int action, int mods)
 {
     int own = key_from_glfw(printed_key(key, scancode));
+    if (own == '=')
+        mods &= ~GLFW_MOD_SHIFT; /* where + stands above = */
     struct view_event event = {.kind = EVENT_KEY,
                                .key = own,
                                .down = action != GLFW_RELEASE,
-                               .repeat = action == GLFW_REPEAT,
                                .mods = mods_from_glfw(mods)};
     if (own >= 0)
         push(glfwGetWindowUserPointer(glfw), &event);

@@ -140,7 +140,8 @@ sky="--camera 0,0,9,0,0,99,0,1,0,40 --size 8x8 --quiet"
 # shellcheck disable=SC2086
 {
     expect 0 "a background" render "$OUT/slab.gltf" -o "$OUT/behind.pfm" $sky --background '#ff8000'
-    expect 0 "a picture of it" render "$OUT/slab.gltf" -o "$OUT/all.pfm" $sky --environment "$OUT/behind.pfm"
+    expect 0 "a picture of it" render "$OUT/slab.gltf" -o "$OUT/all.pfm" $sky --environment "$OUT/behind.pfm" --stats json
+    check "what is cut has the map's light at most" jq -e '.rays.bailout_bound != null' "$OUT/stdout"
     expect 0 "is the same all around" compare "$OUT/behind.pfm" "$OUT/all.pfm" --metric largest --tolerance 1e-6
     expect 0 "the sky" render "$OUT/slab.gltf" -o "$OUT/sky.pfm" $sky --background env
     check "is another" sh -c '! cmp -s "$1/sky.pfm" "$1/behind.pfm"' - "$OUT"

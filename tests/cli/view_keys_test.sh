@@ -31,6 +31,7 @@ again: press O
 exact: press M
 fast: press M
 watertight: press M
+held: key Escape down, key Escape down, key Escape up | toast = Escape once more quits
 END
     for at in "sign traversal|sign" "basic traversal|basic" "round traversal|distance" \
         "back traversal|basic" "sweep tree|builder|sweep" "spatial tree|builder|spatial" \

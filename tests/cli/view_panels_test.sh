@@ -31,12 +31,19 @@ $1x$2-effects:
 $1x$2-difference: press U, press X
 $1x$2-boxes: press N
 $1x$2-help: press H
-$1x$2-pixel: press H, press U, press I, click 60 50
+press H
+press U
+press I
+press B
+still
+$1x$2-pixel: click 60 50 | picked = true
+$1x$2-over: press Tab
+$1x$2-most: press F2 x2, press Tab, press X
+press F2
 press Escape
 wait 5000
 press N
 press N
-press B
 press M
 press Shift+T
 END
@@ -52,7 +59,7 @@ panels() {
     done >"$OUT/sizes"
     play "panels at a scale of $scale" "$CUBE" --size 96x64 --ui-scale "$scale" <"$OUT/sizes"
     for size in "$@"; do
-        for name in full split settings effects difference boxes help pixel; do
+        for name in full split settings effects difference boxes help pixel over most; do
             apart "$size-$name" "${size%x*}" "${size#*x}" 1
         done
         uncut "$size" full split settings difference boxes help

@@ -45,6 +45,7 @@ check "one estimate each time that samples were doubled" test "$(value better fr
 # shellcheck disable=SC2086
 expect 0 "the same picture" render "$SCENES/cube.json" --size 48x36 $camera,90 --aa "$samples" -o same.png --quiet
 expect 0 "F12 saved it" compare same.png whit-0001.png --metric largest --tolerance 0
+check "with the rays of all samples" test "$(grep -ao '"primary":[0-9]*' whit-0001.png)" = '"primary":'$((48 * 36 * samples))
 check "with its samples in the recipe" grep -aq -- "whit render .*--aa $samples " whit-0001.png
 check "the line of Ctrl+C names them" grep -q -- "--aa $samples -o" <<END
 $(value copied render)

@@ -108,6 +108,23 @@ TEST(along_axes)
     }
 }
 
+TEST(a_view_from_above_or_below_is_turned_about_y)
+{
+    for (int from = -1; from <= 1; from += 2) {
+        struct view_camera c = front();
+        camera_along(&c, 1, from);
+        camera_orbit(&c, 0.0, 0.0);
+        assert_near(distance(c.eye, c.target), 5.0);
+        assert_true(fabs(c.eye[0]) < 1e-9 && c.eye[2] > 0.0 && from * c.eye[1] > 4.9);
+        camera_orbit(&c, 0.5 * 3.14159265358979, 0.0);
+        assert_near(c.eye[2], 0.0);
+        assert_true(c.eye[0] < 0.0 && c.up[1] == 1.0);
+        camera_along(&c, 0, 1);
+        camera_orbit(&c, 0.3, 0.0);
+        assert_near(c.eye[1], c.target[1]);
+    }
+}
+
 TEST(text_goes_there_and_back)
 {
     struct view_camera c = front(), back;
