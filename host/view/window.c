@@ -3,6 +3,7 @@
 
 #include "view/window.h"
 
+#include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,6 +11,7 @@
 #include "base/child.h"
 
 enum { EVENTS_HELD = 256 };
+enum { WINDOW_LOST_EXIT = 3 }; /* as where there is no display */
 
 struct window {
     whit_log log;
@@ -204,10 +206,31 @@ static whit_result fail(struct window *window, const char *what)
     return WHIT_ERROR_NO_DEVICE;
 }
 
+/* Xlib would end the process with exit code 1, which whit has for promises that failed. */
+static int lose_display(void *display)
+{
+    (void)display;
+    log_error(&the_window->log, "the display of the window is gone");
+    _Exit(WINDOW_LOST_EXIT);
+}
+
+/* GLFW has loaded Xlib where it uses X11, and nothing else in whit does. */
+static void watch_display(void)
+{
+    void (*set_handler)(int (*)(void *));
+    void *xlib = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+    void *found = xlib ? dlsym(xlib, "XSetIOErrorHandler") : NULL;
+    if (found) {
+        memcpy(&set_handler, &found, sizeof found); /* C has no cast from data to functions */
+        set_handler(lose_display);
+    }
+}
+
 static whit_result make_window(struct window *window, const struct window_params *params)
 {
     if (!glfwInit())
         return fail(window, "no display to open a window on");
+    watch_display();
     if (!glfwVulkanSupported())
         return fail(window, "no Vulkan for windows here");
     window->surface.extensions =

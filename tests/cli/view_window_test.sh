@@ -200,6 +200,24 @@ refuse 2 "--frames 0" "1" view "$CUBE" --frames 0
     refuse 3 "no display" "whit render" view "$CUBE" --frames 1
     exit $FAILED
 ) || FAILED=1
+# A display that goes away while the window is open.
+mkfifo "$OUT/number" "$OUT/shown"
+printf 'still\nstate shown\nwait 600000\n' >"$OUT/waits"
+Xvfb -displayfd 3 -screen 0 320x240x24 -nolisten tcp 3>"$OUT/number" 2>"$OUT/server" </dev/null >"$OUT/server" &
+server=$!
+read -r number <"$OUT/number"
+DISPLAY=:$number "$WHIT" view "$CUBE" $SMALL --remember no --replay "$OUT/waits" >"$OUT/shown" 2>"$OUT/stderr" &
+viewer=$!
+exec 5<"$OUT/shown"
+read -r line <&5
+kill -9 $server
+cat <&5 >"$OUT/rest"
+wait $viewer
+status=$?
+wait $server
+exec 5<&-
+check "the display is gone ($line): exit code 3 (got $status)" test "$status" -eq 3
+check "the display is gone: says so" grep -q "the display of the window is gone" "$OUT/stderr"
 export WHIT_FAULT=vkCreateSurface:1
 run view "$CUBE" --frames 1
 check "no surface: exit code 2 or 3 (got $status)" test "$status" -eq 2 -o "$status" -eq 3
