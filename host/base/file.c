@@ -17,15 +17,16 @@
 #include "base/array.h"
 #include "base/input.h"
 
-/* Paths of unfinished files. Code that takes a pointer out of its slot owns it, so that the signal
-   handler never reads a string that another thread frees. Slot numbers start at 1. */
+/* Paths of unfinished files, and of locks that are held. Code that takes a pointer out of its slot
+   owns it, so that the signal handler never reads a string that another thread frees. Slot numbers
+   start at 1. */
 enum { SLOT_COUNT = 64, NAME_KEPT = 200 }; /* NAME_MAX is 255 */
 static _Atomic(char *) unfinished[SLOT_COUNT];
 static char *abandoned[SLOT_COUNT]; /* not freed: signal handlers may not call free() */
 /* Held while a file is begun and while a slot is given back, so that slots' paths can be read. */
 static pthread_mutex_t begin_lock = PTHREAD_MUTEX_INITIALIZER;
 
-static int slot_take(const char *path)
+int file_slot_take(const char *path)
 {
     char *copy = string_copy(path);
     if (!copy)
@@ -46,7 +47,7 @@ static void slot_free(int slot)
         free(atomic_exchange(&unfinished[slot - 1], NULL));
 }
 
-static void slot_give_back(int slot)
+void file_slot_give_back(int slot)
 {
     pthread_mutex_lock(&begin_lock);
     slot_free(slot);
@@ -226,7 +227,7 @@ static int open_new(struct file_write *file)
     errno = EEXIST;
     if (file_exists(file->temporary_path))
         return -1;
-    file->slot = slot_take(file->temporary_path);
+    file->slot = file_slot_take(file->temporary_path);
     int fd = open(file->temporary_path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     int reason = errno;
     if (fd < 0) {
@@ -381,7 +382,7 @@ void file_write_abandon(struct file_write *file)
         fclose(file->stream);
     if (file->temporary_path)
         unlink(file->temporary_path);
-    slot_give_back(file->slot);
+    file_slot_give_back(file->slot);
     free(file->temporary_path);
     free(file->path);
     *file = (struct file_write){0};

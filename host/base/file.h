@@ -40,6 +40,10 @@ void file_write_abandon(struct file_write *file);
 WHIT_CHECK whit_result file_write_whole(const whit_log *log, const char *path, const void *data,
                                         size_t size_bytes);
 void file_abandon_all(void);
+/* Lets file_abandon_all() remove `path` too, until the slot is given back. 0, which is no slot:
+   there is no room, and the file would stay. */
+int file_slot_take(const char *path);
+void file_slot_give_back(int slot);
 
 bool file_exists(const char *path);
 

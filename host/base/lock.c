@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/file.h"
+
 static enum lock_end fail(const whit_log *log, struct lock *lock, int reason)
 {
     log_error(log, "%s: cannot be locked: %s", lock->path ? lock->path : "a lock",
@@ -39,8 +41,10 @@ enum lock_end lock_take(const whit_log *log, const char *path, struct lock *lock
         if (lock->file < 0)
             return fail(log, lock, errno);
         int reason = flock(lock->file, LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
-        if (!reason && is_current(lock))
+        if (!reason && is_current(lock)) {
+            lock->slot = file_slot_take(lock->path);
             return LOCK_MINE;
+        }
         close(lock->file);
         if (reason == EWOULDBLOCK)
             break;
@@ -56,6 +60,7 @@ void lock_give_back(struct lock *lock)
 {
     if (!lock->path)
         return;
+    file_slot_give_back(lock->slot);
     unlink(lock->path); /* while it is still locked, so that it is not another process's file */
     close(lock->file);
     free(lock->path);

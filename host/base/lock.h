@@ -7,11 +7,12 @@
 
 #include "base/log.h"
 
-/* A lock on the file PATH.lock. The file exists while a process holds the lock, and stays where
-   that process was killed. A zeroed struct holds nothing. */
+/* A lock on the file PATH.lock. The file exists while a process holds the lock; file_abandon_all()
+   removes it too, but it stays where that process was killed. A zeroed struct holds nothing. */
 struct lock {
     char *path; /* of the lock file */
     int file;
+    int slot; /* file_slot_take */
 };
 
 enum lock_end {

@@ -21,6 +21,14 @@ check "a thumbnail of each case" test "$(echo looks.thumbnails/*.png)" = \
 for file in looks.thumbnails/*; do
     check "$file: at most 4096 bytes" test "$(wc -c <"$file")" -le 4096
 done
+printf 'wide cube.json --size 960x9\nhigh cube.json --size 3x400\n' >narrow.whit
+expect 0 "narrow pictures" check narrow.whit --accept all --thumbnails
+sed 's/"intensity": 24/"intensity": 12/' cube.json >dim.json
+sed -i 's/cube/dim/' narrow.whit
+expect 1 "narrow pictures that differ" check narrow.whit --report narrow.html
+check "are shown as they were" jq -e '[.cases[] | select(.before and .difference)] | length == 2' <<END
+$(report narrow.html)
+END
 expect 0 "all as it was" check looks.whit --report fine.html
 check "nothing to compare" test "$(report fine.html | jq '[.cases[] | select(.before)] | length')" -eq 0
 check "three pictures" test "$(report fine.html | jq '[.cases[] | select(.after)] | length')" -eq 3

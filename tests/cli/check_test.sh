@@ -121,6 +121,12 @@ expect 0 "accepted at once" check copy/looks.whit --accept balls
 wait $!
 check "both are kept" test "$(grep -c "^case" copy/looks.golden)" -eq 2
 check "and no lock" test ! -e copy/looks.golden.lock
+mkfifo pipe
+(exec "$WHIT" check copy/looks.whit --accept all) >pipe 2>accepted &
+exec 3<pipe 3<&-
+wait $!
+check "nobody reads what it says: SIGPIPE (got $?)" test $? -eq 141
+check "and no lock is left" test ! -e copy/looks.golden.lock
 expect 0 "once more" check looks.whit --accept all --reason "no reason at all"
 check "what is as it was keeps its reason" test "$(grep -c ' why two bounces less$' looks.golden)" -eq 2
 
@@ -222,6 +228,29 @@ rm stdout # what the run before said is not waited for
 interrupted $! grep -q "^small: " stdout
 check "says how far it came" grep -qx "whit: interrupted, 1 of 3 cases were drawn" stderr
 undrawn "Ctrl+C" 130 '["new", "undrawn", "undrawn"]' "the run was interrupted"
+# A run that waits until another process has accepted ends as while it draws.
+"$WHIT" check slow.whit --on reference --accept all >held 2>&1 &
+holder=$!
+check "a process that accepts" wait_for $holder test -e slow.reference.golden.lock
+set -- "$@" --accept all
+expect 5 "a time limit passes meanwhile" "$@" --time-limit 0.1
+undrawn "a time limit passes meanwhile" 5 '["undrawn", "undrawn", "undrawn"]' "the time limit passed"
+: >stderr # what the run before said is not waited for
+"$WHIT" "$@" >stdout 2>stderr &
+interrupted $! grep -q "is accepting into it; waiting" stderr
+check "says that it drew nothing" grep -qx "whit: interrupted, 0 of 3 cases were drawn" stderr
+undrawn "Ctrl+C while it waits" 130 '["undrawn", "undrawn", "undrawn"]' "the run was interrupted"
+: >stderr
+"$WHIT" check slow.whit --on reference --prune >stdout 2>stderr &
+waiting=$!
+check "it waits to prune" wait_for $waiting grep -q "is accepting into it; waiting" stderr
+kill -TERM $waiting
+wait $waiting
+check "SIGTERM: exit code 143 (got $?)" test $? -eq 143
+check "says that it wrote nothing" grep -qx "whit: interrupted, nothing was written" stderr
+kill -INT $holder
+wait $holder
+expect 5 "a time limit" check slow.whit --on reference --json cut/r.json --time-limit 0.3
 expect 1 "what was not drawn" check slow.whit --on reference --accept-from cut
 check "is not accepted" grep -qx "1 case, 1 accepted, 2 undrawn" stdout
 check "but what was" test "$(grep -c " ids " slow.reference.golden)" -eq 1

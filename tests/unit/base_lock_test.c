@@ -23,6 +23,23 @@ TEST_IN(one_holder_at_a_time, folder_begin, folder_end)
     assert_int_equal(messages.count, 0);
 }
 
+/* A signal handler that ends the process removes the files of locks that are held, and of no
+   others. */
+TEST_IN(the_lock_of_a_process_that_ends_is_removed, folder_begin, folder_end)
+{
+    struct lock lock;
+    char *path = in_folder("a"), *file = in_folder("a.lock");
+    assert_int_equal(lock_take(&warnings_log, path, &lock), LOCK_MINE);
+    file_abandon_all();
+    assert_false(file_exists(file));
+    lock_give_back(&lock);
+    assert_int_equal(lock_take(&warnings_log, path, &lock), LOCK_MINE);
+    lock_give_back(&lock);
+    put_text("a.lock", "of another process");
+    file_abandon_all();
+    assert_true(file_exists(file));
+}
+
 TEST_IN(the_lock_of_a_killed_process_is_taken_over, folder_begin, folder_end)
 {
     struct lock lock;

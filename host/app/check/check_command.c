@@ -530,16 +530,8 @@ static int judge(struct check *check)
 }
 
 /* Reports are also written where the run stopped early, with the results so far. */
-static int work(struct check *check)
+static int end_run(struct check *check, whit_result result)
 {
-    bool read;
-    if (check->mutate || check->power)
-        return strength_run(check);
-    if (check->prune && !check->accept.count)
-        return check_prune(check);
-    whit_result result = find_results(check, &read);
-    if (!read)
-        return result == WHIT_OK ? EXIT_USAGE : cli_exit_of(result);
     if (result != WHIT_OK) {
         mark_undrawn(check, result);
         print_counts(check);
@@ -547,6 +539,21 @@ static int work(struct check *check)
     int status = result == WHIT_OK ? judge(check) : cli_exit_of(result);
     whit_result saved = save_reports(check, status);
     return saved == WHIT_OK || result != WHIT_OK ? status : cli_exit_of(saved);
+}
+
+static int work(struct check *check)
+{
+    bool read;
+    if (check->list)
+        return list(check);
+    if (check->mutate || check->power)
+        return strength_run(check);
+    if (check->prune && !check->accept.count)
+        return check_prune(check);
+    whit_result result = find_results(check, &read);
+    if (read)
+        return end_run(check, result);
+    return result == WHIT_OK ? EXIT_USAGE : cli_exit_of(result);
 }
 
 static void say_wrong(void *user, const char *text)
@@ -561,16 +568,17 @@ static bool changes_golden(const struct check *check)
 }
 
 /* Locks the golden, from before it is read until it is saved, so that of two processes that accept
-   at once the second adds to what the first has saved. False: that is not possible, or the user
-   does not want to wait. */
-static bool lock_golden(const struct check *check, struct lock *lock)
+   at once the second adds to what the first has saved. WHIT_ERROR_OUTPUT: that is not possible;
+   WHIT_ERROR_CANCELLED and WHIT_ERROR_TIME_LIMIT: another process had the lock until then. */
+static whit_result lock_golden(const struct check *check, struct lock *lock)
 {
     enum { LOOK_AGAIN_MS = 20 };
     bool told = false;
     for (;;) {
         enum lock_end end = lock_take(&cli_log, check->golden_path, lock);
-        if (end != LOCK_OTHERS || cli_cancel)
-            return end == LOCK_MINE;
+        whit_result wanted = end == LOCK_OTHERS ? job_still_wanted() : WHIT_OK;
+        if (end != LOCK_OTHERS || wanted != WHIT_OK)
+            return end == LOCK_FAILED ? WHIT_ERROR_OUTPUT : wanted;
         if (!told && !check->settings.quiet)
             cli_note("%s: another process is accepting into it; waiting", check->golden_path);
         told = true;
@@ -578,11 +586,27 @@ static bool lock_golden(const struct check *check, struct lock *lock)
     }
 }
 
+/* Reads the golden, under a lock where it will be changed, and does the work. */
+static int work_on_golden(struct check *check)
+{
+    const enum golden_kind kind = (enum golden_kind)check->on;
+    struct lock lock = {.path = NULL};
+    whit_result locked = changes_golden(check) ? lock_golden(check, &lock) : WHIT_OK;
+    int status = EXIT_USAGE;
+    if (locked != WHIT_OK)
+        status = check->accept.count && locked != WHIT_ERROR_OUTPUT ? end_run(check, locked)
+                                                                    : cli_exit_of(locked);
+    else if (golden_read(&check->golden, check->golden_path, kind) &&
+             golden_read(&check->old, check->golden_path, kind))
+        status = work(check);
+    lock_give_back(&lock);
+    return status;
+}
+
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
     struct check check = {.settings = settings_usual()};
-    struct lock lock = {.path = NULL};
     struct job common = {.start_ms = whit_clock_ms()};
     cli_reader_init(&reader, command, argc, argv);
     if (!cli_read(&reader, &check, &check.settings))
@@ -596,13 +620,11 @@ static int run(const struct cli_command *command, int argc, char **argv)
     int status = EXIT_USAGE;
     common.settings = check.settings;
     if (suite_read(&check.suite, reader.positional, check.root, needs_files, say_wrong, &check) &&
-        check.golden_path && (!changes_golden(&check) || lock_golden(&check, &lock)) &&
-        golden_read(&check.golden, check.golden_path, (enum golden_kind)check.on) &&
-        golden_read(&check.old, check.golden_path, (enum golden_kind)check.on) && choose(&check)) {
+        check.golden_path && choose(&check)) {
         if (check.json || check.junit || check.report)
             cli_keep_what_is_done(GRACE_MS);
         job_start(&common);
-        status = check.list ? list(&check) : work(&check);
+        status = work_on_golden(&check);
     }
     for (uint32_t i = 0; check.results && i < check.suite.count; ++i)
         verdict_finish(&check.results[i]);
@@ -611,7 +633,6 @@ static int run(const struct cli_command *command, int argc, char **argv)
     golden_finish(&check.golden);
     golden_finish(&check.old);
     suite_finish(&check.suite);
-    lock_give_back(&lock);
     free(check.golden_path);
     return status;
 }

@@ -16,31 +16,44 @@ static whit_result out_of_memory(void)
 
 /* ---- Smaller pictures ---- */
 
-/* The mean of a square of `by` x `by` pixels, for `channels` channels. */
+/* A side divided by a whole number; one pixel where it is shorter than that. */
+static uint32_t divided(uint32_t side, uint32_t by)
+{
+    return side < by ? 1 : side / by;
+}
+
+static uint32_t at_most(uint32_t number, uint32_t limit)
+{
+    return number < limit ? number : limit;
+}
+
+/* The mean of a square of `by` x `by` pixels, or of those of it that the image has, for `channels`
+   channels. */
 static void average(const whit_image *image, const whit_image_info *info, uint32_t x, uint32_t y,
                     uint32_t by, uint32_t channels, float *out)
 {
     const float *floats = whit_image_floats(image);
     double sum[3] = {0.0};
-    for (uint32_t row = y * by; row < (y + 1) * by; ++row) {
-        for (uint32_t column = x * by; column < (x + 1) * by; ++column) {
+    uint32_t rows = at_most(by, info->height), columns = at_most(by, info->width);
+    for (uint32_t row = y * by; row < y * by + rows; ++row) {
+        for (uint32_t column = x * by; column < x * by + columns; ++column) {
             const float *pixel = floats + ((size_t)row * info->width + column) * info->channels;
             for (uint32_t k = 0; k < channels; ++k)
                 sum[k] += (double)pixel[k];
         }
     }
     for (uint32_t k = 0; k < channels; ++k)
-        out[k] = (float)(sum[k] / ((double)by * (double)by));
+        out[k] = (float)(sum[k] / ((double)rows * (double)columns));
 }
 
 /* Averages squares of `by` x `by` pixels, without alpha; incomplete squares at the right and bottom
-   are cut. */
+   are cut, but a side shorter than `by` becomes one pixel. */
 static whit_result shrink(const whit_image *image, uint32_t by, const whit_renderer_params *params,
                           whit_image **out)
 {
     whit_image_info info;
     whit_image_get_info(image, &info);
-    uint32_t width = info.width / by, height = info.height / by,
+    uint32_t width = divided(info.width, by), height = divided(info.height, by),
              channels = info.channels < 3 ? 1 : 3;
     float *pixels = array_alloc((size_t)width * height * channels, sizeof *pixels);
     for (uint32_t y = 0; pixels && y < height; ++y) {
@@ -57,6 +70,11 @@ static whit_result shrink(const whit_image *image, uint32_t by, const whit_rende
     return WHIT_OK;
 }
 
+static uint32_t longer_side(const whit_image_info *info)
+{
+    return info->width > info->height ? info->width : info->height;
+}
+
 static void png_finish(struct check_png *png)
 {
     whit_memory_destroy(png->data);
@@ -64,7 +82,7 @@ static void png_finish(struct check_png *png)
 }
 
 /* Makes a PNG of at most `bytes_max`: the image divided by `by`, `by` + 1 and so on until it fits
-   or its sides would be below SIDE_MIN, where a larger PNG is taken. */
+   or its longer side would be below SIDE_MIN, where a larger PNG is taken. */
 static whit_result encode(const whit_image *image, uint32_t by, const whit_renderer_params *params,
                           size_t bytes_max, struct check_png *png)
 {
@@ -73,7 +91,7 @@ static whit_result encode(const whit_image *image, uint32_t by, const whit_rende
     whit_result result = WHIT_OK;
     for (;; ++by) {
         whit_image *small;
-        bool last = info.width / (by + 1) < SIDE_MIN || info.height / (by + 1) < SIDE_MIN;
+        bool last = longer_side(&info) / (by + 1) < SIDE_MIN;
         result = shrink(image, by, params, &small);
         if (result == WHIT_OK)
             result = whit_image_encode_png(small, NULL, 0, &cli_log, &png->data, &png->size_bytes);
@@ -99,8 +117,7 @@ whit_result check_pictures_make(struct check_pictures *pictures, const struct dr
     const whit_renderer_params *params = heat ? NULL : &drawing->params;
     if (result == WHIT_OK)
         result = encode(image, 1, params, PICTURE_BYTES_MAX, &pictures->after);
-    uint32_t larger = info.width > info.height ? info.width : info.height;
-    uint32_t by = (larger + THUMBNAIL_SIDE - 1) / THUMBNAIL_SIDE;
+    uint32_t by = (longer_side(&info) + THUMBNAIL_SIDE - 1) / THUMBNAIL_SIDE;
     if (result == WHIT_OK)
         result = encode(image, by, params, THUMBNAIL_BYTES_MAX, &pictures->thumbnail);
     whit_image_destroy(heat);
@@ -166,8 +183,9 @@ whit_result check_pictures_compare(struct check_pictures *pictures, const struct
     whit_image *small;
     whit_image_get_info(drawing->color, &now);
     whit_image_get_info(before, &then);
-    uint32_t by = then.width ? now.width / then.width : 0;
-    if (!by || now.width / by != then.width || now.height / by != then.height || now.channels < 3)
+    uint32_t by = longer_side(&then) ? longer_side(&now) / longer_side(&then) : 0;
+    if (!by || divided(now.width, by) != then.width || divided(now.height, by) != then.height ||
+        now.channels < 3)
         return WHIT_OK;
     whit_result result = shrink(drawing->color, by, &drawing->params, &small);
     if (result != WHIT_OK)
