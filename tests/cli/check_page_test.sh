@@ -48,6 +48,13 @@ check "no request" test "$(grep -c 'https*://' page.html)" -eq 0
 echo damaged >looks.thumbnails/kept.png
 expect 1 "a damaged thumbnail" check looks.whit --report page.html
 check "is a warning" grep -q "^whit: warning: looks.thumbnails/kept.png: cannot be read" stderr
+: >looks.thumbnails/lost.png
+expect 0 "another picture without a thumbnail" check looks.whit --accept lost --reason dimmer
+check "has none, as the old one is not its" test ! -e looks.thumbnails/lost.png
+rm narrow.golden && mv narrow.thumbnails thumbnails && touch narrow.thumbnails
+expect 2 "thumbnails that cannot be written" check narrow.whit --accept all --thumbnails
+check "each is told, and that the cases are accepted" test "$(grep -c "narrow.thumbnails/.*: cannot write" stderr) $(tail -n 1 stdout)" = \
+    "2 2 cases, 2 accepted"
 printf 'lost cube.json --size 64x48\n' >looks.whit
 expect 0 "prune" check looks.whit --prune
 check "drops thumbnails" test "$(echo looks.thumbnails/*)" = "looks.thumbnails/*"

@@ -14,6 +14,8 @@ floor=', { "shape": "box", "scale": [400, 0.01, 400], "translation": [0, -2, 0] 
 scene away "$away" ''
 scene floor '{ "eye": [0, 0, 3], "target": [0, -0.7, 9] }' "$floor"
 scene inside '{ "eye": [0, 0, 0], "target": [0, 0, 9] }' '' '"ambient": 0, "lights": [],'
+scene mirror "$away" ', { "shape": "plane", "size": 8, "rotation": [-90, 0, 0], "translation": [0, 0, 8],
+    "material": { "diffuse": 0.05, "reflection": 0.9 } }'
 scene aside '{ "eye": [0, 0, 3], "target": [9, 0, 0.5] }' ''
 scene dark '{ "eye": [0, 0, 0.6], "target": [0, 0, -1] }' '' '"ambient": 0,'
 
@@ -33,10 +35,11 @@ dark       dark.json --light none
 near       cube.json --camera 0,0,0.501,0,0,0,0,1,0,5 --light none
 # fine
 cube       cube.json
+mirror     mirror.json
 END
 sed -i 's/json/json --size 64x48/' looks.whit
 expect 1 "vacuous pictures" check looks.whit --accept all
-check "ten are refused" grep -qx "11 cases, 1 accepted, 10 refused" stdout
+check "ten are refused" grep -qx "12 cases, 2 accepted, 10 refused" stdout
 for name in away away-own floor behind; do
     check "$name" grep -q "^$name: .*refused as a golden: the model is behind the camera" stdout
 done
@@ -46,7 +49,7 @@ done
 for name in inside dark near; do
     check "$name" grep -q "^$name: .*refused as a golden: every pixel has the same colour" stdout
 done
-check "the golden has the other one alone" test "$(grep -c '^case' looks.golden)" -eq 1
+check "the golden has the other two alone" test "$(grep -c '^case' looks.golden)" -eq 2
 
 # A case that was accepted with a good picture is refused as soon as its picture shows nothing.
 printf 'cube cube.json --size 64x48\n' >looks.whit

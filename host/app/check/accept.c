@@ -51,16 +51,16 @@ static bool put_case(struct check *check, const struct check_result *result)
     return put;
 }
 
-/* Marks a case of the saved golden as accepted. False: its thumbnail could not be saved. */
+/* Marks a case of the saved golden as accepted, and saves its thumbnail. A thumbnail of a former
+   picture is removed. False: the new one could not be saved. */
 static bool note_accepted(struct check *check, struct check_result *result)
 {
-    bool is_new = result->verdict == CHECK_DIFFERS || result->verdict == CHECK_NEW ||
-                  result->verdict == CHECK_SAME;
-    if (check->thumbnails && check_save_thumbnail(check, result) != WHIT_OK)
-        return false;
-    if (is_new)
+    bool other = result->verdict == CHECK_DIFFERS || result->verdict == CHECK_NEW;
+    if (other)
+        check_drop_thumbnail(check, result->item->name);
+    if (other || result->verdict == CHECK_SAME)
         verdict_set(result, CHECK_ACCEPTED, string_format("accepted: %s", result->text));
-    return true;
+    return !check->thumbnails || check_save_thumbnail(check, result) == WHIT_OK;
 }
 
 int check_accept(struct check *check)
@@ -72,13 +72,13 @@ int check_accept(struct check *check)
         if (can_accept(result) && !put_case(check, result))
             return cli_exit_of(cli_no_memory());
     }
-    int saved = check_prune(check);
+    int saved = check_prune(check), noted = saved;
     for (uint32_t i = 0; saved == EXIT_FINE && i < check->suite.count; ++i) {
         struct check_result *result = &check->results[i];
         if (can_accept(result) && !note_accepted(check, result))
-            return EXIT_USAGE;
+            noted = EXIT_USAGE;
     }
-    return saved;
+    return noted;
 }
 
 /* Removes the cases that the suite does not have. */

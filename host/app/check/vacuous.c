@@ -56,15 +56,18 @@ static bool find_camera(const struct drawing *drawing, double eye[3], double tar
     return info.kind != WHIT_CAMERA_PANORAMA;
 }
 
-/* Whether the scene's objects, without a floor, all lie behind the camera's plane. False where this
-   is not known: in an animated scene at another time than 0. */
+/* Whether the scene's objects, without a floor, all lie behind the camera's plane, where no mirror
+   or glass shows them. False where this is not known: in an animated scene at another time than 0.
+ */
 static bool is_behind(const struct drawing *drawing)
 {
     double eye[3], target[3];
     whit_scene_info scene;
     whit_scene_get_info(drawing->job.scene, &scene);
     bool moves = scene.time_end_s > 0.0 && drawing->params.time_s != 0.0;
-    if (moves || scene.objects_lo[0] > scene.objects_hi[0] || !find_camera(drawing, eye, target))
+    bool turned = drawing->stats.rays_reflected > 0 || drawing->stats.rays_refracted > 0;
+    if (moves || turned || scene.objects_lo[0] > scene.objects_hi[0] ||
+        !find_camera(drawing, eye, target))
         return false;
     for (int corner = 0; corner < 8; ++corner) {
         double along = 0.0;
