@@ -113,6 +113,14 @@ size_t text_mark_bytes(const char *text)
     return strncmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
 }
 
+bool text_end_line(char *line)
+{
+    size_t length = strlen(line);
+    if (length && line[length - 1] == '\r')
+        line[length - 1] = '\0';
+    return strchr(line, '\r') == NULL;
+}
+
 void text_add(char *text, size_t bytes, const char *format, ...)
 {
     size_t used = strlen(text);

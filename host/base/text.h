@@ -20,6 +20,9 @@ struct text_token text_token(const char *text);
  */
 size_t text_mark_bytes(const char *text);
 
+/* Cuts the carriage return with which a line of text may end. False: there is another one in it. */
+bool text_end_line(char *line);
+
 /* Appends to `text`, which lies in a buffer of `bytes`. What does not fit is cut. */
 void text_add(char *text, size_t bytes, const char *format, ...) WHIT_PRINTF(3, 4);
 

@@ -163,6 +163,12 @@ check "with what is" grep -q "line 7 expects pixel(0,0).instance == \"cube\", it
 check "they are no difference" grep -qx "1 case, 1 unmet" stdout
 expect 1 "what is not as expected" check hopes.whit --accept all
 check "is not accepted" grep -qx "1 case, 1 unmet" stdout
+printf 'cube cube.json --size 64x48\ncube expect mean == 9, min == 9, max == 9, pixel(32,24) == 9, pixel(32,24).t == 9\n' >equal.whit
+expect 1 "other values" check equal.whit
+tr ';' '\n' <stdout | sed -n 's/^ line 2 \(expects .* ==\) 9, it is/cube \1/p' | sed 's/expects/expect/' >values
+check "each is told" test "$(wc -l <values)" -eq 5
+sed -i 2d equal.whit && cat values >>equal.whit
+expect 4 "values as whit prints them are those of the picture" check equal.whit
 printf 'cube cube.json --size 16x12\ncube expect leaks == 0\n' >leaks.whit
 "$LEAKY" check leaks.whit --accept all >stdout 2>stderr
 check "leaks are those of portable kernels" grep -qx "1 case, 1 accepted" stdout

@@ -97,11 +97,12 @@ TEST(order_and_repetition_mean_nothing)
     golden_finish(&golden);
 }
 
-/* A golden file of another version of whit is read all the same. */
+/* A golden file of another version of whit is read all the same, as is one that an editor on
+   Windows has written. */
 TEST(another_whit_is_no_reason_to_refuse)
 {
     struct golden golden;
-    char other[] = "whit check golden 2, whit 99.0.1-rc2\r\n";
+    char other[] = "\xef\xbb\xbfwhit check golden 2, whit 99.0.1-rc2\r\n";
     assert_true(golden_read_text(&golden, "x.golden", other, GOLDEN_OF_DEVICE));
     assert_string_equal(golden.by, "99.0.1-rc2");
     golden_finish(&golden);
@@ -144,7 +145,10 @@ TEST(damage_is_told_by_its_line)
         {HEAD "\n" IDS, "x.golden:3: the case `a` lacks a line"},
         {HEAD IDS "\n a ids 9 colors 2 3x4 rays 5 6 7 8 mean 1 2 3\n", OTHER},
         {HEAD IDS "\n a ids 1 colors 9 3x4 rays 5 6 7 8 mean 1 2 3\n", OTHER},
+        {HEAD IDS "\n a ids 1 colors 2 3x4 rays 5 6 7 9 mean 1 2 3\n", OTHER},
+        {HEAD IDS "\n a ids 1 colors 2 3x4 rays 5 6 7 8 mean 1 2 4\n", OTHER},
         {HEAD "case a of b\n\ncase a of c\n", OTHER},
+        {HEAD "case a of b\rcase b of c\n", "x.golden:2: a carriage return that does not end"},
         {HEAD " a parts 1\ncase b of c\n a parts 2\n", OTHER},
         {HEAD " a parts 1\ncase b of c\n a parts 1 2\n", OTHER},
         {HEAD " a why 1\n\n a why 2\n", OTHER},

@@ -135,6 +135,7 @@ TEST_IN(wrong_lines_are_told, folder_begin, folder_end)
         {"c3 a.json --portable", "option `--portable` is always on"},
         {"c4 a.json --help", "--help is for the command line"},
         {"nobody expect leaks == 0", "there is no case `nobody` above"},
+        {"one a.json\rtwo a.json", "a carriage return that does not end a line"},
         {"fine expect", "an expectation is missing"},
         {"fine expect leaks == 0,", "an expectation is missing"},
     };

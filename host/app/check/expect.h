@@ -60,6 +60,7 @@ struct expect_field {
     const char *name;
     enum expect_kind kind;
     bool of_pixel, counts;
+    bool floats; /* its numbers are floats, and are compared with the floats nearest to the text */
     /* Reads the field's value from a drawing. WHIT_ERROR_FAILED, without a message: the drawing has
        no such value. */
     whit_result (*read)(const struct drawing *drawing, const struct check_expectation *one,

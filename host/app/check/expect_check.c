@@ -1,4 +1,5 @@
 /* The fields that suites may have expectations of, and the check of these. */
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -170,9 +171,9 @@ const struct expect_field expect_fields[] = {
      .stat = offsetof(whit_stats, rays_cut_bailout)},
     {"max_stack", EXPECT_NUMBER, .counts = true, .read = read_max_stack},
     {"mean", EXPECT_COLOR, .read = read_colors, .color = COLOR_MEAN},
-    {"min", EXPECT_COLOR, .read = read_colors, .color = COLOR_MIN},
-    {"max", EXPECT_COLOR, .read = read_colors, .color = COLOR_MAX},
-    {"pixel", EXPECT_COLOR, .of_pixel = true, .read = read_pixel},
+    {"min", EXPECT_COLOR, .floats = true, .read = read_colors, .color = COLOR_MIN},
+    {"max", EXPECT_COLOR, .floats = true, .read = read_colors, .color = COLOR_MAX},
+    {"pixel", EXPECT_COLOR, .of_pixel = true, .floats = true, .read = read_pixel},
     {"pixel.instance", EXPECT_NAME, .of_pixel = true, .read = read_instance},
     {"pixel.primitive", EXPECT_NUMBER, .of_pixel = true, .read = read_primitive},
     {"pixel.material", EXPECT_NAME, .of_pixel = true, .read = read_material},
@@ -202,13 +203,20 @@ static bool holds(enum expect_op op, double a, double b, double tolerance)
     }
 }
 
+/* The number of channel `i` that a field's value is compared with. */
+static double number_of(expectation_t *one, uint32_t i)
+{
+    double number = one->numbers[one->count == 3 ? i : 0];
+    bool rounds = expect_fields[one->field].floats && one->op != EXPECT_WITHIN;
+    return rounds && fabs(number) <= (double)FLT_MAX ? (double)(float)number : number;
+}
+
 /* All channels of a colour must hold; for != one channel is enough. */
 static bool compare_numbers(expectation_t *one, const struct expect_value *value)
 {
     uint32_t count = expect_fields[one->field].kind == EXPECT_COLOR ? 3 : 1, held = 0;
     for (uint32_t i = 0; i < count; ++i)
-        held += holds(one->op, value->numbers[i], one->numbers[one->count == 3 ? i : 0],
-                      one->tolerance);
+        held += holds(one->op, value->numbers[i], number_of(one, i), one->tolerance);
     return one->op == EXPECT_OTHER ? held > 0 : held == count;
 }
 
@@ -219,13 +227,19 @@ static bool compare_words(expectation_t *one, const struct expect_value *value)
     return same == (one->op == EXPECT_EQUAL);
 }
 
-static char *value_text(enum expect_kind kind, const struct expect_value *value)
+/* A text that is equal to the value where an expectation has it. */
+static char *value_text(const struct expect_field *field, const struct expect_value *value)
 {
-    const double *numbers = value->numbers;
-    if (kind == EXPECT_COLOR)
-        return string_format("%.9g %.9g %.9g", numbers[0], numbers[1], numbers[2]);
-    if (kind == EXPECT_NUMBER)
-        return string_format("%.9g", numbers[0]);
+    char texts[3][32];
+    for (int i = 0; i < 3; ++i) {
+        snprintf(texts[i], sizeof texts[i], "%.9g", value->numbers[i]);
+        if (!field->floats && strtod(texts[i], NULL) != value->numbers[i])
+            setting_write_number(value->numbers[i], texts[i], sizeof texts[i]);
+    }
+    if (field->kind == EXPECT_COLOR)
+        return string_format("%s %s %s", texts[0], texts[1], texts[2]);
+    if (field->kind == EXPECT_NUMBER)
+        return string_copy(texts[0]);
     return value->word ? string_format("\"%s\"", value->word) : string_copy("none");
 }
 
@@ -238,7 +252,7 @@ whit_result expectation_check(const struct check_expectation *one, const struct 
     whit_result result = field->read(drawing, one, &value);
     if (result != WHIT_OK && result != WHIT_ERROR_FAILED)
         return result;
-    *is = result == WHIT_OK ? value_text(field->kind, &value) : string_copy("none");
+    *is = result == WHIT_OK ? value_text(field, &value) : string_copy("none");
     if (!*is)
         return WHIT_ERROR_MEMORY;
     bool held = field->kind == EXPECT_NAME ? compare_words(one, &value)

@@ -10,6 +10,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/text.h"
 
 enum { GOLDEN_BYTES_MAX = 64 << 20 };
 
@@ -210,6 +211,13 @@ static bool refuse_other(const struct reading *reading, const struct golden_case
         item->line, item->name);
 }
 
+static bool same_picture(const struct golden_case *a, const struct golden_case *b)
+{
+    return a->ids == b->ids && a->colors == b->colors && a->width == b->width &&
+           a->height == b->height && memcmp(a->rays, b->rays, sizeof a->rays) == 0 &&
+           memcmp(a->mean, b->mean, sizeof a->mean) == 0;
+}
+
 static bool read_picture(struct reading *reading, struct golden_case *item, const char *text)
 {
     struct golden_case is = *item;
@@ -221,7 +229,7 @@ static bool read_picture(struct reading *reading, struct golden_case *item, cons
                  &is.rays[3], &is.mean[0], &is.mean[1], &is.mean[2], &length);
     if (length < 0 || text[length] || !is.width)
         return refuse(reading, "`ids HASH colors HASH WxH rays A B C D mean R G B` is needed");
-    if (item->width && (is.ids != item->ids || is.colors != item->colors))
+    if (item->width && !same_picture(&is, item))
         return refuse_other(reading, item);
     *item = is;
     return true;
@@ -363,12 +371,15 @@ bool golden_read_text(struct golden *golden, const char *where, char *text, enum
     struct reading reading = {.golden = golden, .where = where};
     bool whole = true;
     *golden = (struct golden){.exists = true, .kind = kind};
-    for (char *line = text, *end; whole && line; line = end) {
+    for (char *line = text + text_mark_bytes(text), *end; whole && line; line = end) {
         end = strchr(line, '\n');
         if (end)
             *end++ = '\0';
-        line[strcspn(line, "\r")] = '\0';
-        whole = ++reading.line == 1 ? read_head(&reading, line) : read_line(&reading, line);
+        ++reading.line;
+        if (!text_end_line(line))
+            whole = refuse(&reading, "a carriage return that does not end a line");
+        else
+            whole = reading.line == 1 ? read_head(&reading, line) : read_line(&reading, line);
     }
     free(reading.key);
     whole = whole && are_whole(&reading);

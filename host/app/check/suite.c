@@ -305,9 +305,10 @@ bool suite_read(struct suite *suite, const char *path, const char *root, suite_n
         end = strchr(text, '\n');
         if (end)
             *end++ = '\0';
-        text[strcspn(text, "\r")] = '\0';
         snprintf(line.where, sizeof line.where, "%.500s:%u", path, ++line.number);
-        suite->wrong += !read_line(&line, text);
+        suite->wrong += text_end_line(text)
+                            ? !read_line(&line, text)
+                            : !refuse(&line, "a carriage return that does not end a line");
     }
     free(data);
     if (whole && !suite->wrong && !suite->count) {
