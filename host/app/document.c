@@ -1,5 +1,6 @@
 #include "app/document.h"
 
+#include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -120,6 +121,24 @@ static json_t *from_float(float value)
 void document_text(json_t *object, const char *key, const char *text)
 {
     document_put(object, key, from_text(text));
+}
+
+void document_restore(char *text)
+{
+    char *to = text;
+    for (const char *from = text; *from;) {
+        unsigned byte = 0;
+        bool escaped = from[0] == '\\' && from[1] == 'x' && isxdigit((unsigned char)from[2]) &&
+                       sscanf(from + 2, "%2x", &byte) == 1 && isxdigit((unsigned char)from[3]);
+        *to++ = escaped && byte ? (char)byte : *from;
+        from += escaped ? 4 : 1;
+    }
+    *to = '\0';
+}
+
+void document_append_text(json_t *array, const char *text)
+{
+    document_append(array, from_text(text));
 }
 
 void document_number(json_t *object, const char *key, double value)

@@ -18,7 +18,8 @@ json_t *document_object(void);
 enum { DOCUMENT_FORMAT = 2 };
 json_t *document_root(void);
 json_t *document_array(void);
-void document_append(json_t *array, json_t *value);                /* takes over `value` */
+void document_append(json_t *array, json_t *value); /* takes over `value` */
+void document_append_text(json_t *array, const char *text);
 void document_put(json_t *object, const char *key, json_t *value); /* likewise */
 
 /* An empty object or array, which its parent already holds: keys are written in the order in which
@@ -28,6 +29,8 @@ json_t *document_list(json_t *object, const char *key);
 json_t *document_entry(json_t *array);
 
 void document_text(json_t *object, const char *key, const char *text); /* NULL: null */
+/* Undoes in place what document_text has done to a text. */
+void document_restore(char *text);
 void document_number(json_t *object, const char *key, double value);
 double document_known(double value); /* NAN, which is written as null, where it is negative */
 void document_ms(json_t *object, const char *key, double time_ms); /* in whole microseconds */

@@ -70,6 +70,11 @@ if command -v chromium >/dev/null || command -v chromium-browser >/dev/null; the
     look "$OUT/seen.html"
     check "nothing on the console" test "$(wc -l <"$OUT/console")" -eq 0
     check "nothing asked for" test "$(wc -l <"$OUT/requests")" -eq 0
+    mv cube.json 'a\xb.json'
+    printf '%s\n' "a 'a\\xb.json' --size 40x30" >backslash.whit
+    expect 4 "a backslash before an x" check backslash.whit --report backslash.html
+    dom "$OUT/backslash.html"
+    check "is in the command as the shell needs it" test "$(count '<pre>whit render .a\\xb.json')" -eq 1
 else
     echo "SKIPPED part: no Chromium"
 fi

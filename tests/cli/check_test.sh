@@ -65,6 +65,18 @@ refuse 2 "a suite of the same name elsewhere" "other.json: a report of the suite
     check copy/looks.whit --accept-from other.json --reason x
 refuse 2 "a report of other options" "report.json: balls-fast: it was drawn with other options" \
     check "$PWD/copy/looks.whit" --accept-from ci --reason x
+cp looks.whit copy/looks.whit && echo 'balls-fast expect hits < 9' >>copy/looks.whit
+refuse 2 "a report of before an expectation" "report.json: balls-fast: the report was made before the suite expected" \
+    check copy/looks.whit --accept-from ci --reason x
+expect 1 "one that checked it" check copy/looks.whit --json copy/checked.json
+expect 1 "what is not as expected in a report" check copy/looks.whit --accept-from copy/checked.json --accept balls-fast
+check "is not accepted" grep -qx "1 case, 1 unmet" stdout
+jq 'del(.cases[1, 2])' ci/report.json >one.json
+refuse 2 "a report without the case" "one.json: it has no result of .balls-f\*. of looks.whit" \
+    check looks.whit --accept-from one.json --accept cube 'balls-f*' --reason x
+cp looks.whit 's\x1.whit'
+expect 4 "a backslash in the name of a suite" check 's\x1.whit' --json backslash.json
+expect 0 "its report" check 's\x1.whit' --accept-from backslash.json --accept cube
 sed 's/ rays 3072/ rays 9999/' ci/report.json >ci/second.json
 refuse 2 "two reports that differ" "second.json: cube: another report says something else" \
     check looks.whit --accept-from ci --reason x

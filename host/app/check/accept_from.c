@@ -12,16 +12,14 @@
 
 enum { REPORT_BYTES_MAX = 256 << 20 };
 
-/* Undoes in place the `\x5c` that document_text writes for a backslash before an x. */
-static void restore_text(char *text)
+/* A text of a report as it was before document_text; free() it. NULL: it is none, or out of
+   memory. */
+static char *original(const json_t *value)
 {
-    char *to = text;
-    for (const char *from = text; *from;) {
-        bool escaped = strncmp(from, "\\x5c", 4) == 0;
-        *to++ = escaped ? '\\' : *from;
-        from += escaped ? 4 : 1;
-    }
-    *to = '\0';
+    char *text = string_copy(json_string_value(value));
+    if (text)
+        document_restore(text);
+    return text;
 }
 
 /* Reads the golden lines of one case in a report. */
@@ -33,7 +31,7 @@ static bool read_lines(struct golden *found, const char *where, const char *line
         cli_error("out of memory");
         return false;
     }
-    restore_text(text);
+    document_restore(text);
     bool read = golden_read_text(found, where, text, GOLDEN_OF_DEVICE);
     if (read && found->count != 1)
         cli_error("%s: its lines of a golden are not those of one case", where);
@@ -50,6 +48,23 @@ static bool agrees(const struct check_result *result, const struct golden *found
     free(one);
     free(other);
     return same;
+}
+
+/* Whether the run of a report checked all that the suite expects of the case now. `texts`: what was
+   expected then; NULL: nothing. */
+static bool checked_all(const struct check_case *item, const json_t *texts)
+{
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < item->expectation_count; ++i) {
+        bool has = false;
+        for (size_t k = 0; k < json_array_size(texts) && !has; ++k) {
+            char *text = original(json_array_get(texts, k));
+            has = text && strcmp(text, item->expectations[i].text) == 0;
+            free(text);
+        }
+        found += has;
+    }
+    return found == item->expectation_count;
 }
 
 /* NULL, or why the result in a report is not taken. */
@@ -103,9 +118,11 @@ static bool take_case(struct check *check, const char *path, const json_t *item)
         verdict_set(result, bad, string_copy(text));
     if (bad < CHECK_VERDICTS || (result->verdict >= CHECK_UNMET && result->verdict < CHECK_UNDRAWN))
         return true;
-    if (lines)
+    if (lines && checked_all(of, json_object_get(item, "expects")))
         return take_lines(check, result, lines, where);
-    cli_error("%s: the report has no lines of a golden", where);
+    cli_error("%s: %s", where,
+              lines ? "the report was made before the suite expected of it what it does now"
+                    : "the report has no lines of a golden");
     return false;
 }
 
@@ -148,11 +165,12 @@ static bool may_be_same(const char *a, const char *b)
 
 static bool is_of_suite(const struct check *check, const char *path, const json_t *root)
 {
-    const char *suite = json_string_value(json_object_get(root, "suite"));
-    if (!suite || may_be_same(suite, check->suite.path))
-        return true;
-    cli_error("%s: a report of the suite %s, not of %s", path, cli_shown(suite), check->suite.path);
-    return false;
+    char *suite = original(json_object_get(root, "suite"));
+    bool same = !suite || may_be_same(suite, check->suite.path);
+    if (!same)
+        cli_error("%s: a report of the suite %s, not of %s", path, suite, check->suite.path);
+    free(suite);
+    return same;
 }
 
 static bool read_report(struct check *check, const char *path)
@@ -205,9 +223,32 @@ static bool read_folder(struct check *check, const char *folder)
     return read;
 }
 
+/* Checks that the reports have a case for each name of --accept. */
+static bool have_names(const struct check *check)
+{
+    for (uint32_t p = 0; p < check->accept.count; ++p) {
+        const char *pattern = check->accept.patterns[p];
+        const struct check_names one = {{pattern}, 1};
+        uint32_t wanted = 0, found = 0;
+        for (uint32_t i = 0; i < check->suite.count; ++i) {
+            bool is_one = check->wanted[i] && check_names_match(&one, check->suite.cases[i].name);
+            wanted += is_one;
+            found += is_one && check->results[i].verdict != CHECK_NOT_RUN;
+        }
+        if (!wanted || found)
+            continue;
+        cli_error("%s: it has no result of `%s` of %s", check->accept_from, pattern,
+                  check->suite.path);
+        return false;
+    }
+    return true;
+}
+
 bool check_read_reports(struct check *check)
 {
     struct stat info;
     bool folder = stat(check->accept_from, &info) == 0 && S_ISDIR(info.st_mode);
-    return folder ? read_folder(check, check->accept_from) : read_report(check, check->accept_from);
+    bool read =
+        folder ? read_folder(check, check->accept_from) : read_report(check, check->accept_from);
+    return read && have_names(check);
 }

@@ -57,8 +57,9 @@ static void put_pictures(const struct check *check, json_t **objects, size_t lef
 /* Removes what the page does not show. */
 static void drop_keys(json_t *object, bool is_shown_whole)
 {
-    static const char *const keys[] = {"golden", "is", "command", "was", "changed", "cause"};
-    enum { NEVER_SHOWN = 2 }; /* the first ones; the others only for cases that are not fine */
+    static const char *const keys[] = {"golden", "is",      "expects", "command",
+                                       "was",    "changed", "cause"};
+    enum { NEVER_SHOWN = 3 }; /* the first ones; the others only for cases that are not fine */
     for (size_t i = 0; i < (is_shown_whole ? NEVER_SHOWN : sizeof keys / sizeof *keys); ++i)
         json_object_del(object, keys[i]);
 }

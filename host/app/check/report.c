@@ -74,6 +74,9 @@ static json_t *case_document(const struct check *check, uint32_t index)
     document_count(out, "line", result->item->line);
     document_text(out, "verdict", verdict_word(result->verdict));
     document_text(out, "text", result->text);
+    json_t *expects = document_list(out, "expects");
+    for (uint32_t i = 0; i < result->item->expectation_count; ++i)
+        document_append_text(expects, result->item->expectations[i].text);
     document_text(out, "changed", result->changed);
     document_text(out, "cause", result->cause);
     document_ms(out, "time_ms", result->time_ms);
