@@ -114,4 +114,13 @@ kill -KILL $!
 wait $! 2>/dev/null
 sleep 1 # it may be gone for a moment only
 check "git is busy: nothing is left" wait_for $$ is_gone
+
+# The commit above has all the changes, but the golden of before.
+expect 1 "a change that was committed, but not accepted" check suite/looks.whit --only option --base HEAD
+check "is older than that" grep -qx "option: differs: HEAD gives this picture too, but its golden does not have it: an older .*" "$OUT/stdout"
+cp suite/looks.golden before
+expect 0 "accepted" check suite/looks.whit --accept option --reason "fewer bounces"
+git commit -qam accepted && cp before suite/looks.golden
+expect 1 "a golden of before" check suite/looks.whit --only option --base HEAD
+check "is older than the revision" grep -qx "option: differs: HEAD gives this picture too, and its golden has it: .*" "$OUT/stdout"
 finish

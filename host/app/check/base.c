@@ -17,7 +17,20 @@ static void say_wrong(void *user, const char *text)
     cli_error("--base %s: %s", cli_shown(base->tree.revision), cli_shown(text));
 }
 
-whit_result base_open(struct base *base, const char *suite, const char *root, const char *revision)
+/* A golden that cannot be read, as one of an older format, counts as none. */
+static void read_golden(struct base *base, enum golden_kind kind)
+{
+    char *path = golden_path(base->path, kind);
+    atomic_bool said = false;
+    cli_mute(&said);
+    if (path && !golden_read(&base->golden, path, kind))
+        golden_finish(&base->golden);
+    cli_mute(NULL);
+    free(path);
+}
+
+whit_result base_open(struct base *base, const char *suite, const char *root, const char *revision,
+                      enum golden_kind kind)
 {
     char *folder = path_folder(suite);
     *base = (struct base){.folder = NULL};
@@ -34,6 +47,8 @@ whit_result base_open(struct base *base, const char *suite, const char *root, co
         } else if (!base->path || (root && !base->root) ||
                    !suite_read(&base->suite, base->path, base->root, NULL, say_wrong, base)) {
             result = WHIT_ERROR_INPUT;
+        } else {
+            read_golden(base, kind);
         }
     }
     free(folder);
@@ -43,6 +58,7 @@ whit_result base_open(struct base *base, const char *suite, const char *root, co
 void base_close(struct base *base)
 {
     suite_finish(&base->suite);
+    golden_finish(&base->golden);
     worktree_remove(&base->tree);
     free(base->folder);
     free(base->root);
@@ -106,6 +122,22 @@ static whit_result write_all(const struct past *past, const struct studio *studi
     return WHIT_OK;
 }
 
+/* Whether a golden has the picture that was drawn; `item`: its case, or NULL. */
+static bool has_picture(const struct golden_case *item, const struct trial *picture)
+{
+    return item && item->ids == picture->ids && item->colors == picture->colors;
+}
+
+/* Writes why a picture that the revision draws too is not the golden's. */
+static void write_same(const struct base *base, const struct past *past, const char *name, FILE *to)
+{
+    bool fits = has_picture(golden_find(&base->golden, name), &past->picture);
+    fprintf(to, "%s gives this picture too, %s", base->tree.revision,
+            fits ? "and its golden has it: the present golden is another one"
+                 : "but its golden does not have it: an older revision may tell the cause, or whit "
+                   "or the device is other");
+}
+
 whit_result base_explain(const struct base *base, struct studio *studio,
                          const struct check_case *item, const struct golden_case *accepted,
                          const struct drawing *drawing, char **text, whit_image **before)
@@ -127,13 +159,12 @@ whit_result base_explain(const struct base *base, struct studio *studio,
     whit_result result = draw_past(&past, studio, old);
     if (result == WHIT_OK) {
         trial_hash(drawing, &now);
-        if (trial_same(&now, &past.picture))
-            fprintf(to, "%s gives this picture too: what is other is whit, or the device",
-                    revision);
+        bool same = trial_same(&now, &past.picture);
+        if (same)
+            write_same(base, &past, item->name, to);
         else
             result = write_all(&past, studio, item, drawing, to);
-        if (accepted &&
-            (accepted->ids != past.picture.ids || accepted->colors != past.picture.colors))
+        if (accepted && !same && !has_picture(accepted, &past.picture))
             fprintf(to, "; at %s the picture is not the golden's either", revision);
     }
     *before = past.picture.drawing.color;

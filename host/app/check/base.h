@@ -9,12 +9,13 @@ struct base {
     struct worktree tree;
     char *folder, *root, *path; /* of the suite in the worktree; root: NULL as in base_open */
     struct suite suite;
+    struct golden golden; /* empty where the revision has none that can be read */
 };
 
-/* Reads the suite as `revision` has it; `root`: as of suite_read. Errors were printed; call
-   base_close() in any case. Call it before the device is opened. */
+/* Reads the suite and its golden as `revision` has them; `root`: as of suite_read. Errors were
+   printed; call base_close() in any case. Call it before the device is opened. */
 WHIT_CHECK whit_result base_open(struct base *base, const char *suite, const char *root,
-                                 const char *revision);
+                                 const char *revision, enum golden_kind kind);
 /* Draws the case as it was at the revision. *text says how and why `drawing` differs: "214 pixels
    other, 96 hit something else; cause: ..."; free() it. *before: the colours of the old picture,
    for the caller to destroy, or NULL. `accepted`: the case of the golden, or NULL. Errors were

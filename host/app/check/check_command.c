@@ -511,9 +511,9 @@ static whit_result find_results(struct check *check, bool *read)
     *read = !check->accept_from || take_reports(check);
     if (check->accept_from)
         return WHIT_OK;
-    whit_result result = check->base
-                             ? base_open(&check->past, check->suite.path, check->root, check->base)
-                             : WHIT_OK;
+    whit_result result = check->base ? base_open(&check->past, check->suite.path, check->root,
+                                                 check->base, (enum golden_kind)check->on)
+                                     : WHIT_OK;
     *read = result == WHIT_OK || result == WHIT_ERROR_CANCELLED;
     if (result == WHIT_OK)
         result = run_cases(check);
