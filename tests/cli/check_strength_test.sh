@@ -41,4 +41,6 @@ check "that is said" grep -qx "2 more found no place that is seen" "$OUT/stdout"
 
 refuse 2 "no comparison" "compares nothing with a golden" check looks.whit --mutate 2 --accept all
 refuse 2 "one of two" "one of them" check looks.whit --mutate 2 --power
+printf 'a a.json\nb broken.json\n' >looks.whit && echo '{' >broken.json
+refuse 2 "a scene that cannot be loaded" "looks.whit:2: b: broken.json" check looks.whit --only b --power
 finish

@@ -203,6 +203,15 @@ refuse 2 "no suite" "a suite is missing" check
 refuse 2 "no such suite" "nowhere.whit: there is no such file" check nowhere.whit
 refuse 2 "no such case" "looks.whit has no such case" check looks.whit --accept cube nothing
 refuse 2 "no such pattern" "only .nothing" check looks.whit --only nothing
+: >bare/room.glsl && cp cube.json bare/ && printf 'a cube.json\nb cube.json --shader room.glsl\n' >bare/inputs.whit
+refuse 2 "a report over a scene" "bare/cube.json: a scene of the suite and --json name the same file" \
+    check bare/inputs.whit --json bare/cube.json
+refuse 2 "a report over a shader" "bare/room.glsl: a shader of the suite and --junit name the same file" \
+    check bare/inputs.whit --junit ./bare/room.glsl
+refuse 2 "a report that --list does not write" "list compares nothing" check looks.whit --list --report x.html
+refuse 2 "a report that --prune does not write" "prune alone draws nothing, and --junit is" check looks.whit --prune --junit x.xml
+refuse 2 "cases for --prune alone" "prune alone draws nothing, and --only is" check looks.whit --prune --only cube
+refuse 2 "a blank reason" "reason: 1 to 120 bytes, not all blank" check looks.whit --accept all --reason "  "
 refuse 2 "a reason alone" "accept is missing" check looks.whit --reason x
 refuse 2 "two suites" "one argument too many" check looks.whit looks.whit
 echo damaged >>looks.golden

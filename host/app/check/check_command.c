@@ -121,6 +121,25 @@ static bool check_outputs(struct cli_reader *reader, const struct check *check)
            cli_check_output(reader, "--report", check->report, hint);
 }
 
+/* Refuses reports over files of the suite's cases; called when the suite was read. */
+static bool check_inputs(struct cli_reader *reader, const struct check *check)
+{
+    bool reports = check->json || check->junit || check->report, apart = true;
+    for (uint32_t i = 0; reports && apart && i < check->suite.count; ++i) {
+        const struct settings *settings = check->suite.cases[i].settings;
+        const char *environment = settings->environment, *shader = settings->shader;
+        const struct cli_file files[] = {
+            {"a scene of the suite", settings->scene, false},
+            {"an environment of the suite", *environment ? environment : NULL, false},
+            {"a shader of the suite", *shader ? shader : NULL, false},
+            {"--json", check->json, true},
+            {"--junit", check->junit, true},
+            {"--report", check->report, true}};
+        apart = cli_check_apart(reader, files, sizeof files / sizeof *files);
+    }
+    return apart;
+}
+
 /* Refuses to change a golden that another suite beside this one has too. */
 static bool check_golden(struct cli_reader *reader, const struct check *check)
 {
@@ -138,6 +157,27 @@ static bool is_folder(const char *path)
 {
     struct stat info;
     return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+/* Refuses options that a run without verdicts would ignore. */
+static bool check_alone(struct cli_reader *reader, const struct check *check)
+{
+    const char *report = check->json     ? "json"
+                         : check->junit  ? "junit"
+                         : check->report ? "report"
+                                         : NULL;
+    const char *mode = check->list     ? "list"
+                       : check->power  ? "power"
+                       : check->mutate ? "mutate"
+                                       : NULL;
+    if (mode && (check->accept.count || check->prune || report || (check->base && !check->list)))
+        return cli_misuse(reader, "--%s compares nothing with a golden, and goes with --only alone",
+                          mode);
+    if (check->power + (check->mutate > 0) + check->list > 1)
+        return cli_misuse(reader, "--list, --power and --mutate: one of them");
+    const char *other = check->base ? "base" : check->only.count ? "only" : report;
+    return !check->prune || check->accept.count || !other ||
+           cli_misuse(reader, "--prune alone draws nothing, and --%s is for what is drawn", other);
 }
 
 static bool check_request(struct cli_reader *reader, struct check *check)
@@ -159,20 +199,18 @@ static bool check_request(struct cli_reader *reader, struct check *check)
         return cli_misuse(reader, "--reason is why something is accepted, and --accept is missing");
     if (check->thumbnails && (!check->accept.count || check->accept_from))
         return cli_misuse(reader, "--thumbnails are of pictures that are drawn for --accept");
-    if ((check->power || check->mutate) && (check->accept.count || check->prune || check->base ||
-                                            check->json || check->junit || check->report))
-        return cli_misuse(reader, "--%s compares nothing with a golden, and goes with --only alone",
-                          check->power ? "power" : "mutate");
-    if (check->power && check->mutate)
-        return cli_misuse(reader, "--power and --mutate: one of them");
+    if (!check_alone(reader, check))
+        return false;
     if (check->on == GOLDEN_OF_REFERENCE &&
         (check->settings.device[0] || check->settings.validation))
         return cli_misuse(reader, "--on reference uses no device: --%s is of one",
                           check->settings.device[0] ? "device" : "validation");
     if (!check_outputs(reader, check) || !check_golden(reader, check))
         return false;
-    if (check->reason && (!check->reason[0] || strlen(check->reason) > GOLDEN_REASON_MAX))
-        return cli_misuse(reader, "--reason: 1 to %d bytes are needed", GOLDEN_REASON_MAX);
+    if (check->reason && (!check->reason[strspn(check->reason, " \t\r\n")] ||
+                          strlen(check->reason) > GOLDEN_REASON_MAX))
+        return cli_misuse(reader, "--reason: 1 to %d bytes, not all blank, are needed",
+                          GOLDEN_REASON_MAX);
     return true;
 }
 
@@ -358,10 +396,7 @@ static whit_result draw_case(struct check *check, struct studio *studio, uint32_
 static whit_result run_case(struct check *check, struct studio *studio, uint32_t index)
 {
     struct check_result *result = &check->results[index];
-    char where[1024];
-    snprintf(where, sizeof where, "%.500s:%u: %s", check->suite.path, result->item->line,
-             result->item->name);
-    cli_errors_of(where);
+    suite_errors_of(&check->suite, result->item);
     whit_result drawn = draw_case(check, studio, index);
     if (drawn != WHIT_OK && !trial_ends_all(drawn)) {
         const char *why = cli_said()[0] ? cli_said() : whit_result_name(drawn);
@@ -620,7 +655,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     int status = EXIT_USAGE;
     common.settings = check.settings;
     if (suite_read(&check.suite, reader.positional, check.root, needs_files, say_wrong, &check) &&
-        check.golden_path && choose(&check)) {
+        check_inputs(&reader, &check) && check.golden_path && choose(&check)) {
         if (check.json || check.junit || check.report)
             cli_keep_what_is_done(GRACE_MS);
         job_start(&common);

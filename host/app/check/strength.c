@@ -9,6 +9,7 @@ static whit_result try_case(struct check *check, struct studio *studio, uint32_t
 {
     const struct check_case *item = &check->suite.cases[index];
     struct drawing drawing;
+    suite_errors_of(&check->suite, item);
     whit_result result = studio_draw(studio, index, false, &drawing);
     struct fault_case faulted = {
         .name = item->name,
@@ -22,6 +23,7 @@ static whit_result try_case(struct check *check, struct studio *studio, uint32_t
                               : mutate_case(mutate, &faulted, faults);
     }
     drawing_finish(&drawing);
+    cli_errors_of(NULL);
     return result;
 }
 

@@ -46,6 +46,13 @@ struct check_case *suite_find(const struct suite *suite, const char *name)
     return NULL;
 }
 
+void suite_errors_of(const struct suite *suite, const struct check_case *item)
+{
+    static char where[WHERE_BYTES + CHECK_NAME_MAX];
+    snprintf(where, sizeof where, "%.500s:%u: %s", suite->path, item->line, item->name);
+    cli_errors_of(where);
+}
+
 bool suite_matches(const char *pattern, const char *name)
 {
     return fnmatch(pattern, name, 0) == 0;

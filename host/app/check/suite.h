@@ -43,6 +43,9 @@ bool suite_read(struct suite *suite, const char *path, const char *root, suite_n
 void suite_finish(struct suite *suite);
 /* The case of that name; NULL: there is none. */
 struct check_case *suite_find(const struct suite *suite, const char *name);
+/* Errors from this call on begin with the suite's path, the line and the name of the case, until
+   cli_errors_of(NULL). One thread may call it. */
+void suite_errors_of(const struct suite *suite, const struct check_case *item);
 /* Whether a name is `pattern`, in which * stands for any letters and ? for one. */
 bool suite_matches(const char *pattern, const char *name);
 
