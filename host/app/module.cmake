@@ -28,7 +28,7 @@ add_executable(whit_program
   app/cost/cost_choice.c app/cost/cost_command.c app/cost/cost_compare.c app/cost/cost_json.c
   app/cost/cost_kept.c app/cost/cost_page.c app/cost/cost_table.c
   app/devices/device_hints.c app/devices/devices_command.c
-  app/batch/batch_command.c app/batch/lines.c app/merge/merge_command.c app/merge/merge.c
+  app/batch/batch_command.c app/batch/lines.c app/batch/outputs.c app/merge/merge_command.c app/merge/merge.c
   app/hard/hard_command.c app/hard/hard_output.c
   app/probe/probe_command.c app/probe/probe_output.c app/probe/probe_shader.c
   app/render/costs.c app/render/frames.c app/render/layers.c app/render/part.c app/render/recipe.c app/render/refine.c

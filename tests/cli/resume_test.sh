@@ -95,9 +95,17 @@ if part 1 2; then
     echo "'$SWARM' -o x.png 'x" >wrong
     refuse 2 "a quote without end" "wrong:1: a quote has no end" batch wrong
     echo "'$SWARM' -o x.png" | tee wrong >>wrong2 && sed 's/-o /-o .\//' wrong2 >>wrong
-    refuse 2 "two lines of one picture" "wrong:2: its -o is that of line 1" batch wrong
+    refuse 2 "two lines of one picture" "wrong:2: its -o is the -o of line 1" batch wrong
     printf '%s --frames %s -o x.#.png\n' "'$SWARM'" 0-4 "'$SWARM'" 6-9 "'$SWARM'" 3-5 >wrong
-    refuse 2 "frames in two lines" "wrong:3: its -o is that of line 1" batch wrong
+    refuse 2 "frames in two lines" "wrong:3: its -o is the -o of line 1" batch wrong
+    printf "'$SWARM' -o %s\n" 'x.png --ids a.exr' a.exr >wrong
+    refuse 2 "identities in a picture" "wrong:2: its -o is the --ids of line 1" batch wrong
+    printf "'$SWARM' -o %s\n" 'v2.#.png --frames 9-10' v2.10.png >wrong
+    refuse 2 "a picture in frames" "wrong:2: its -o is the -o of line 1" batch wrong
+    printf "'$SWARM' -o %s\n" 'v2.#.png --frames 9-10' 'v2.##.png --frames 10-99' >wrong
+    refuse 2 "frames of another pattern" "wrong:2: its -o is the -o of line 1" batch wrong
+    printf "'$SWARM' --size 2x2 -o %s\n" 'v2.#.png --frames 9-10' 'v2.##.png --frames 9-9' v2.11.png v3.10.png >right
+    expect 0 "other names" batch right
     expect 5 "a time limit" batch lines --time-limit 0.001
     check "says how lines go on" grep -q "^whit: to go on: whit batch lines --time-limit 0.001 --resume$" "$OUT/stderr"
 fi

@@ -8,7 +8,6 @@
 #include "app/render/render_command.h"
 #include "base/array.h"
 #include "base/file.h"
-#include "base/hash.h"
 #include "base/text.h"
 
 enum { WORDS_MAX = 256, FILE_BYTES_MAX = 256 << 20 };
@@ -137,43 +136,6 @@ static void sort(struct lines *lines)
         qsort(lines->places, lines->count, sizeof *lines->places, compare_places);
 }
 
-static int compare_outputs(const void *a, const void *b)
-{
-    const struct line_place *x = *(const struct line_place *const *)a;
-    const struct line_place *y = *(const struct line_place *const *)b;
-    if (x->output != y->output)
-        return x->output < y->output ? -1 : 1;
-    if (x->first_frame != y->first_frame)
-        return x->first_frame < y->first_frame ? -1 : 1;
-    return x->number < y->number ? -1 : 1;
-}
-
-/* Refuses two lines that write the same file: the picture of one would be lost. */
-static int check_outputs(const struct lines *lines)
-{
-    const struct line_place **places = array_alloc(lines->count, sizeof *places), *last = NULL;
-    int status = places || lines->count == 0 ? EXIT_FINE : cli_exit_of(cli_no_memory());
-    for (uint32_t i = 0; places && i < lines->count; ++i)
-        places[i] = &lines->places[i];
-    if (places)
-        qsort(places, lines->count, sizeof *places, compare_outputs);
-    for (uint32_t i = 0; places && status == EXIT_FINE && i < lines->count; ++i) {
-        bool same =
-            last && last->output == places[i]->output && places[i]->first_frame <= last->last_frame;
-        if (same) {
-            cli_error("%s:%u: its -o is that of line %u", lines->path,
-                      last->number > places[i]->number ? last->number : places[i]->number,
-                      last->number < places[i]->number ? last->number : places[i]->number);
-            status = EXIT_USAGE;
-        }
-        bool farther =
-            !last || last->output != places[i]->output || places[i]->last_frame > last->last_frame;
-        last = farther ? places[i] : last;
-    }
-    free(places);
-    return status;
-}
-
 /* Replaces hash `group` of each line by the smallest line number among lines with the same hashes
    up to `group`, so that groups sort by their first line in the file. */
 static void number_group(struct lines *lines, int group)
@@ -189,16 +151,6 @@ static void number_group(struct lines *lines, int group)
         for (uint32_t k = i; k < end; ++k)
             places[k].group[group] = least;
     }
-}
-
-static void take_output(const struct render_request *request, struct line_place *place)
-{
-    const char *name = request->output;
-    while (strncmp(name, "./", 2) == 0)
-        name += 2;
-    place->output = hash_bytes(HASH_START, name, strlen(name));
-    place->first_frame = request->frames.given ? request->frames.first : 0;
-    place->last_frame = request->frames.given ? request->frames.last : 0;
 }
 
 int lines_init(struct lines *lines, struct line *line)
@@ -218,11 +170,12 @@ int lines_init(struct lines *lines, struct line *line)
         place->group[LINE_SCENE] = settings_hash_scene(&line->job.settings);
         place->group[LINE_KERNEL] = settings_hash_kernel(&line->job.settings);
         lines->compile |= settings_compiles(&line->job.settings);
-        take_output(&line->request, place);
+        if (!outputs_add(&lines->outputs, &line->request, place->number))
+            return cli_exit_of(cli_no_memory());
     }
-    int status = check_outputs(lines);
-    if (status != EXIT_FINE)
-        return status;
+    if (!outputs_check(&lines->outputs, lines->path))
+        return EXIT_USAGE;
+    outputs_finish(&lines->outputs);
     number_group(lines, LINE_SCENE);
     number_group(lines, LINE_KERNEL);
     sort(lines);
@@ -244,5 +197,6 @@ void lines_finish(struct lines *lines)
 {
     free(lines->places);
     free(lines->text);
+    outputs_finish(&lines->outputs);
     *lines = (struct lines){0};
 }

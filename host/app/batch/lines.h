@@ -2,7 +2,7 @@
 #ifndef APP_BATCH_LINES_H
 #define APP_BATCH_LINES_H
 
-#include "app/render/render_command.h"
+#include "app/batch/outputs.h"
 
 enum { LINE_BYTES_MAX = 64 << 10 };
 
@@ -13,8 +13,6 @@ enum { LINE_SCENE, LINE_KERNEL, LINE_GROUPS };
 struct line_place {
     size_t at, bytes;
     uint64_t group[LINE_GROUPS]; /* for each LINE_* grouping, equal in lines of the same group */
-    uint64_t output;             /* hash of the name of -o */
-    uint32_t first_frame, last_frame;
     uint32_t number;
     bool left; /* it is still to be drawn */
 };
@@ -26,7 +24,8 @@ struct lines {
     bool resume;                /* --resume of the command, for all lines */
     struct line_place *places;  /* in the order in which they are drawn */
     uint32_t count, capacity;
-    bool compile; /* a line has functions or stages that are compiled */
+    struct outputs outputs; /* while lines are read */
+    bool compile;           /* a line has functions or stages that are compiled */
 };
 
 /* A line that was read; its words are in `text`. */

@@ -48,9 +48,7 @@ bool frames_read(const struct setting *setting, const char *value, void *request
     return true;
 }
 
-/* Finds the last run of # in the name of the file, not in its folders. Gives its offset and
- *length; *length 0: there is none. */
-static size_t find_marks(const char *pattern, size_t *length)
+size_t frames_find_marks(const char *pattern, size_t *length)
 {
     const char *slash = strrchr(pattern, '/');
     const char *last = strrchr(slash ? slash : pattern, '#');
@@ -67,13 +65,13 @@ static size_t find_marks(const char *pattern, size_t *length)
 static bool has_marks(const char *pattern)
 {
     size_t length;
-    find_marks(pattern, &length);
+    frames_find_marks(pattern, &length);
     return length > 0;
 }
 
 char *frames_path(const char *pattern, uint32_t frame)
 {
-    size_t length, at = find_marks(pattern, &length), size = strlen(pattern) + 16;
+    size_t length, at = frames_find_marks(pattern, &length), size = strlen(pattern) + 16;
     char *path = length ? malloc(size) : NULL;
     if (path)
         snprintf(path, size, "%.*s%0*u%s", (int)at, pattern, (int)length, frame,
