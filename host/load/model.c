@@ -200,7 +200,7 @@ static whit_result prepare_ply(struct scene *scene, const char *path, struct mod
     if (result == WHIT_OK)
         result = ply_replace_strips(&scene->log, path, &file->data, &file->size_bytes);
     if (result == WHIT_OK)
-        result = ply_check_elements(&scene->log, path, file->data, file->size_bytes);
+        result = ply_check_elements(&scene->log, path, file->data, &file->size_bytes);
     bool repaired = result != WHIT_OK || ply_repair(&file->data, &file->size_bytes);
     return repaired ? result : WHIT_ERROR_MEMORY;
 }

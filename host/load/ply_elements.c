@@ -26,6 +26,7 @@ struct element {
     char name[WORD_BYTES];
     unsigned long long count;
     size_t begin, end; /* offsets of its lines in the header */
+    size_t data_end;   /* offset behind its data; filled by check_elements */
     uint32_t first_property, property_count;
 };
 
@@ -389,7 +390,7 @@ static whit_result check_elements(const whit_log *log, const char *path, const u
     bool lines = header->format == FORMAT_ASCII;
     struct cursor from = {data + header->end, lines ? data + header->end : end, header->format};
     for (uint32_t i = 0; i < header->element_count; i++) {
-        const struct element *element = &header->elements[i];
+        struct element *element = &header->elements[i];
         const char *why_not = NULL;
         unsigned long long done = 0;
         for (; done < element->count && !why_not; done++) {
@@ -402,21 +403,65 @@ static whit_result check_elements(const whit_log *log, const char *path, const u
                       element->count, why_not);
             return WHIT_ERROR_INPUT;
         }
+        while (lines && from.end < end && *from.end <= ' ')
+            from.end++;
+        element->data_end = (size_t)((lines ? from.end : from.at) - data);
     }
     return WHIT_OK;
 }
 
-whit_result ply_check_elements(const whit_log *log, const char *path, const uint8_t *data,
-                               size_t size_bytes)
+/* --- what assimp reads ---------------------------------------------------------------------- */
+
+static bool is_read(const char *name)
+{
+    return strcmp(name, "vertex") == 0 || strcmp(name, "face") == 0;
+}
+
+static void move_down(uint8_t *data, size_t *to, size_t begin, size_t end)
+{
+    memmove(data + *to, data + begin, end - begin);
+    *to += end - begin;
+}
+
+/* Removes all elements but vertices and faces, and the header's comments; gives the new size. */
+static size_t keep_read(uint8_t *data, const struct header *header)
+{
+    char words[WORDS_MAX][WORD_BYTES];
+    bool kept = true;
+    size_t to = 0;
+    for (size_t at = 0, next; at < header->end; at = next) {
+        next = read_line(data, header->end, at, words);
+        if (strcmp(words[0], "element") == 0)
+            kept = is_read(words[1]);
+        bool comment = strcmp(words[0], "comment") == 0 || strcmp(words[0], "obj_info") == 0;
+        if (next == header->end || (kept && !comment))
+            move_down(data, &to, at, next);
+    }
+    size_t begin = header->end;
+    for (uint32_t i = 0; i < header->element_count; i++) {
+        const struct element *element = &header->elements[i];
+        if (is_read(element->name))
+            move_down(data, &to, begin, element->data_end);
+        begin = element->data_end;
+    }
+    data[to] = 0;
+    return to;
+}
+
+whit_result ply_check_elements(const whit_log *log, const char *path, uint8_t *data,
+                               size_t *size_bytes)
 {
     struct header header = {0};
-    whit_result result = read_header(data, size_bytes, &header) ? WHIT_OK : WHIT_ERROR_MEMORY;
+    whit_result result = read_header(data, *size_bytes, &header) ? WHIT_OK : WHIT_ERROR_MEMORY;
     if (result == WHIT_OK && !has_known_types(&header)) {
         log_error(log, "%s: its header names a type of numbers that PLY does not have", path);
         result = WHIT_ERROR_INPUT;
     }
-    if (result == WHIT_OK && header.end <= size_bytes)
-        result = check_elements(log, path, data, size_bytes, &header);
+    bool has_data = header.end <= *size_bytes;
+    if (result == WHIT_OK && has_data)
+        result = check_elements(log, path, data, *size_bytes, &header);
+    if (result == WHIT_OK && has_data)
+        *size_bytes = keep_read(data, &header);
     header_finish(&header);
     return result;
 }

@@ -13,8 +13,11 @@
 WHIT_CHECK whit_result ply_replace_strips(const whit_log *log, const char *path, uint8_t **data,
                                           size_t *size_bytes);
 /* Logs an error if an element of a file that ply_check accepted is cut short, missing, or a face
-   without corners, or if a type is unknown: assimp 5.2 would crash, or draw what is left. */
-WHIT_CHECK whit_result ply_check_elements(const whit_log *log, const char *path,
-                                          const uint8_t *data, size_t size_bytes);
+   without corners, or if a type is unknown: assimp 5.2 would crash, or draw what is left. Removes
+   all other elements than vertices and faces, and comments in the header: assimp skips wrong lines
+   and bytes for the ones, and loses the property behind the others. A zero byte is behind *data,
+   before and after. */
+WHIT_CHECK whit_result ply_check_elements(const whit_log *log, const char *path, uint8_t *data,
+                                          size_t *size_bytes);
 
 #endif

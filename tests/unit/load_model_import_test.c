@@ -350,6 +350,35 @@ TEST_IN(faces_that_a_ply_lacks_are_told, fixture_begin, fixture_end)
     assert_int_equal(fixture_load(put_text("a.ply", whole)), WHIT_OK);
 }
 
+#define UNREAD_HEADER(format)                                                                      \
+    "ply\nformat " format " 1.0\ncomment a\nelement cell 2\nproperty int id\nelement vertex 3\n"   \
+    "property uchar x\ncomment b\nproperty uchar y\nobj_info c\nproperty uchar z\n"                \
+    "element segment 1\nproperty uchar id\nproperty list uchar uchar w\nelement face 1\n"          \
+    "property list uchar uchar vertex_indices\nelement tag 1\nproperty uchar value\nend_header\n"
+
+/* Elements and comments, for which assimp skips wrong lines, bytes and properties. */
+TEST_IN(unread_elements_of_a_ply_shift_nothing, fixture_begin, fixture_end)
+{
+    static const char ascii[] =
+        UNREAD_HEADER("ascii") "7\n9\n\n1 2 3\n4 2 3\n1 5 3\n8 2 1 1\n3 0 1 2\n6";
+    static const char binary[] = UNREAD_HEADER("binary_little_endian") "\7\0\0\0\11\0\0\0"
+                                                                       "\1\2\3\4\2\3\1\5\3"
+                                                                       "\10\2\1\1"
+                                                                       "\3\0\1\2"
+                                                                       "\6";
+    const float wanted[9] = {1, 2, 3, 4, 2, 3, 1, 5, 3};
+    for (int i = 0; i < 2; i++) {
+        const char *path =
+            put_data("a.ply", i ? binary : ascii, (i ? sizeof binary : sizeof ascii) - 1);
+        if (fixture_load(path) != WHIT_OK)
+            fail_msg("%s", messages.last_error);
+        const struct scene_mesh *mesh = &fixture.scene->meshes[i];
+        assert_int_equal(mesh->triangle_count, 1);
+        for (uint32_t k = 0; k < 9; k++)
+            assert_float_equal(mesh->positions[3 * mesh->indices[k / 3] + k % 3], wanted[k], 0);
+    }
+}
+
 TEST_IN(polygons_of_missing_vertices_are_dropped, fixture_begin, fixture_end)
 {
     const char *text = FACES_HEADER("ascii") "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n6 0 1 2 250 251 252\n";
