@@ -90,9 +90,17 @@ static uint8_t *copy_numbers(uint8_t *to, const uint8_t *from, const uint8_t *en
     return to;
 }
 
+static uint8_t *put_text(uint8_t *to, const char *text)
+{
+    memcpy(to, text, strlen(text));
+    return to + strlen(text);
+}
+
 /* Copies the line at *from without its comment and the blanks around it, joined with the lines that
-   a backslash at its end continues it by. As many line ends follow as it had. */
-static uint8_t *clean_line(const uint8_t **from, const uint8_t *end, uint8_t *to)
+   a backslash at its end continues it by. As many line ends follow as it had. A vertex with a
+   colour sets *has_colors; then one without becomes white, as assimp 5.2 gives colours to vertices
+   in the order of the colours alone. */
+static uint8_t *clean_line(const uint8_t **from, const uint8_t *end, uint8_t *to, bool *has_colors)
 {
     const uint8_t *at = *from;
     uint8_t *start = to;
@@ -118,10 +126,13 @@ static uint8_t *clean_line(const uint8_t **from, const uint8_t *end, uint8_t *to
         at = next;
     }
     bool is_uv = to - start > 2 && start[0] == 'v' && start[1] == 't' && is_blank(start[2]);
-    if (is_uv && count_words(start, to) == 2) {
-        memcpy(to, " 0", 2);
-        to += 2;
-    }
+    bool is_vertex = to - start > 1 && start[0] == 'v' && is_blank(start[1]);
+    uint32_t words = is_uv || is_vertex ? count_words(start, to) : 0;
+    *has_colors |= is_vertex && words == 7;
+    if (is_uv && words == 2)
+        to = put_text(to, " 0");
+    if (is_vertex && words == 4 && *has_colors)
+        to = put_text(to, " 1 1 1");
     memset(to, '\n', lines);
     *from = at;
     return to + lines;
@@ -134,14 +145,18 @@ bool obj_repair_text(uint8_t **data, size_t *size_bytes)
                 ((text[0] == 0xfe && text[1] == 0xff) || (text[0] == 0xff && text[1] == 0xfe));
     if (wide && !from_utf16(data, size_bytes))
         return false;
-    const uint8_t *at = *data + text_mark_bytes((const char *)*data), *end = *data + *size_bytes;
-    /* Half as much more at most: `vt .5` and its line end become `vt 0.5 0`. The last line may lack
-       its line end. */
-    uint8_t *out = array_alloc(*size_bytes + *size_bytes / 2 + 4, 1), *to = out;
+    const uint8_t *begin = *data + text_mark_bytes((const char *)*data), *end = *data + *size_bytes;
+    /* Less than twice as much: `v .5 .5 .5` and its line end become `v 0.5 0.5 0.5 1 1 1`. The last
+       line may lack its line end. */
+    uint8_t *out = array_alloc(*size_bytes + 2, 2), *to = out;
     if (!out)
         return false;
-    while (at < end)
-        to = clean_line(&at, end, to);
+    bool has_colors = false;
+    for (int pass = 0; pass < (has_colors ? 2 : 1); pass++) {
+        to = out;
+        for (const uint8_t *at = begin; at < end;)
+            to = clean_line(&at, end, to, &has_colors);
+    }
     *to = 0;
     free(*data);
     *size_bytes = (size_t)(to - out);

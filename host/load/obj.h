@@ -8,9 +8,10 @@
 
 /* Writes the text as UTF-8 in the lines that assimp 5.2 and the functions below read: without a
    byte order mark, comments and blanks around a line, with \n behind every line and lines joined
-   that a backslash continues (each line keeps its number), with a zero in ` .5`, and with a second
-   coordinate, 0, where a `vt` has one. Replaces *data (malloc'ed, zero-terminated). False when
-   memory runs out; *data is then still to be freed. */
+   that a backslash continues (each line keeps its number), with a zero in ` .5`, with a second
+   coordinate, 0, where a `vt` has one, and with a white colour behind each `v` without one if
+   others have colours. Replaces *data (malloc'ed, zero-terminated). False when memory runs out;
+   *data is then still to be freed. */
 WHIT_CHECK bool obj_repair_text(uint8_t **data, size_t *size_bytes);
 
 /* The line number, from 1, of the face with the most words in a repaired text; 0: there is no

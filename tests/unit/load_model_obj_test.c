@@ -131,6 +131,19 @@ TEST_IN(vertex_colors, fixture_begin, fixture_end)
     assert_float_equal(fixture.scene->materials[mesh->materials[0]].diffuse[0], 1, 0);
 }
 
+/* Vertices without a colour, of which the first stands above all colours: they are white. */
+TEST_IN(vertices_without_a_color_among_colors, fixture_begin, fixture_end)
+{
+    const char *path = put_text("a.obj", "v 0 0 9\nv 1 0 0 .25 .5 .75\nv .5 .5 .5\nv 0 1 0 0 0 1\n"
+                                         "f 2 4 3\nf 1 2 3\n");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = only_mesh();
+    const float wanted[6] = {0.25f, 0, 1, 1, 0.25f, 1}; /* the red of each corner */
+    for (int i = 0; i < 6; i++)
+        assert_float_equal(mesh->colors[4 * mesh->indices[i]], wanted[i], 0);
+    assert_float_equal(mesh->positions[3 * mesh->indices[5]], 0.5, 0);
+}
+
 TEST_IN(flat_group_beside_a_smooth_one, fixture_begin, fixture_end)
 {
     const char *path = put_text("a.obj", QUAD "vn 0 1 0\ng a\nf 1//1 2//1 3//1\ng b\nf 1 3 4\n");
