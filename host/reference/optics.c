@@ -95,10 +95,10 @@ static struct finish take_textures(const struct reference *reference, const stru
                                    struct optics *o)
 {
     const struct scene_material *m = s->material;
-    struct dvec3 color = texture_sample(reference, s, SCENE_SLOT_DIFFUSE).rgb;
+    struct dvec3 color = d3_times(s->color, texture_sample(reference, s, SCENE_SLOT_DIFFUSE).rgb);
     struct dvec3 tint = texture_sample(reference, s, SCENE_SLOT_SPECULAR).rgb;
     struct dvec3 metal = texture_sample(reference, s, SCENE_SLOT_METAL_ROUGH).rgb;
-    o->diffuse = d3_times(d3_times(d3_load(m->diffuse), s->color), color);
+    o->diffuse = d3_times(d3_load(m->diffuse), color);
     o->ambient = d3_times(d3_load(m->ambient), color);
     o->highlight = d3_times(d3_load(m->specular), tint);
     o->emission =

@@ -19,7 +19,7 @@ Optics surface_optics(inout Surface s, gpu_material m, vec3 dir, float eta)
     o.unlit = m.model == MATERIAL_MODEL_UNLIT;
     o.metal_rough = SPEC_METAL_ROUGH != 0u && m.model == MATERIAL_MODEL_METAL_ROUGH;
     o.diffuse = m.diffuse * s.color;
-    o.ambient = m.ambient;
+    o.ambient = m.ambient * s.color;
     o.highlight = m.specular;
     o.emission = SPEC_EMISSION != 0u ? m.emission : vec3(0.0);
     o.shininess = m.shininess;

@@ -97,6 +97,7 @@ static void add_bodies(struct scene *scene)
     use_smooth(&leaf, SCENE_SLOT_OPACITY, add_noise(scene, 0, true), 2, SCENE_WRAP_REPEAT);
     use_smooth(&leaf, SCENE_SLOT_BUMP, add_noise(scene, 0, false), 2, SCENE_WRAP_REPEAT);
     add_object(scene, true_ball(0.6f), leaf, 0.2, 1.9, -1);
+    set_rgb(paint.ambient, 0.9f, 0.9f, 0.9f);
     set_rgb(paint.reflection, 0.1f, 0.1f, 0.1f);
     paint.fresnel = true;
     paint.one_sided = true;

@@ -238,24 +238,41 @@ TEST(each_texture_has_its_coordinates)
     }
 }
 
+static struct scene_mesh coloured_plane(float grey, float alpha)
+{
+    struct scene_mesh mesh = mesh_plane(10);
+    mesh.colors = array_alloc(mesh.vertex_count, 4 * sizeof *mesh.colors);
+    assert_non_null(mesh.colors);
+    for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
+        set_rgb(&mesh.colors[4 * v], grey, grey, grey);
+        mesh.colors[4 * v + 3] = alpha;
+    }
+    return mesh;
+}
+
 /* glTF multiplies the opacity of a mask by the alpha of vertices: below the cutoff nothing is
  * there. */
 TEST(masks_heed_the_alpha_of_vertices)
 {
     static const float alphas[] = {0.6f, 0.4f};
     for (int i = 0; i < 2; ++i) {
-        struct scene_mesh mesh = mesh_plane(10);
-        mesh.colors = array_alloc(mesh.vertex_count, 4 * sizeof *mesh.colors);
-        assert_non_null(mesh.colors);
-        for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
-            set_rgb(&mesh.colors[4 * v], 1, 1, 1);
-            mesh.colors[4 * v + 3] = alphas[i];
-        }
         struct scene_material m = white();
         m.alpha = SCENE_ALPHA_MASK;
         m.alpha_cutoff = 0.5f;
-        assert_even(sunny(from_above(), mesh, m), i ? 0.0 : COS_SUN, 1e-6);
+        assert_even(sunny(from_above(), coloured_plane(1, alphas[i]), m), i ? 0.0 : COS_SUN, 1e-6);
     }
+}
+
+/* Like textures, vertex colours tint what surfaces send of all light, ambient light too. */
+TEST(vertex_colors_tint_all_light)
+{
+    struct scene *scene = from_above();
+    struct scene_material m = white();
+    set_rgb(scene->ambient, 0.5f, 0.5f, 0.5f);
+    set_rgb(m.ambient, 1, 1, 1);
+    use_texture(&m, SCENE_SLOT_DIFFUSE, add_texel(scene, 128, 128, 128));
+    assert_even(sunny(scene, coloured_plane(0.25f, 1), m), 0.25 * linear_of(128) * (COS_SUN + 0.5),
+                3e-5);
 }
 
 /* A square across `n`, with texture coordinates along its sides. */
