@@ -53,7 +53,7 @@ struct import_part {
    too many, or 0; a model with such a face has no parts. `face`: index of that face in its mesh. */
 struct import_counts {
     uint64_t points, lines, bad_faces, face, corners;
-    uint32_t skins, animations, lights, cameras, pictures; /* of a GLB */
+    uint32_t skins, animations, lights, cameras, pictures, color_groups; /* of a GLB */
 };
 
 struct import_block {

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "image/image.h"
 #include "load/importer_glb.h"
 #include "load/threemf.h"
 
@@ -63,9 +64,12 @@ static void place_fbx(const struct aiScene *scene, struct aiMatrix4x4 *out)
 }
 
 /* 3MF has z upwards. */
-static void place_3mf(const struct import_file *file, struct aiMatrix4x4 *out)
+static void place_3mf(const struct import_file *file, struct import_counts *counts,
+                      struct aiMatrix4x4 *out)
 {
-    double metres = threemf_unit_m(file->data, file->size_bytes);
+    const struct threemf_head head = threemf_read(file->data, file->size_bytes);
+    double metres = head.unit_m;
+    counts->color_groups = head.color_groups;
     set_row(out, 0, 0, metres);
     set_row(out, 1, 2, metres);
     set_row(out, 2, 1, -metres);
@@ -73,14 +77,15 @@ static void place_3mf(const struct import_file *file, struct aiMatrix4x4 *out)
 
 /* Applies the file's units and axes to the root node. For COLLADA assimp has done so already; OFF
    has neither. */
-static void place(struct aiScene *scene, const struct import_request *request)
+static void place(struct aiScene *scene, const struct import_request *request,
+                  struct import_counts *counts)
 {
     struct aiMatrix4x4 placed;
     aiIdentityMatrix4(&placed);
     if (request->kind == IMPORT_FBX)
         place_fbx(scene, &placed);
     else if (request->kind == IMPORT_3MF)
-        place_3mf(&request->files[0], &placed);
+        place_3mf(&request->files[0], counts, &placed);
     aiMultiplyMatrix4(&placed, &scene->mRootNode->mTransformation);
     scene->mRootNode->mTransformation = placed;
 }
@@ -193,6 +198,15 @@ static void drop(struct aiScene *scene, enum import_kind kind, struct import_cou
     scene->mNumCameras = scene->mNumLights = 0;
 }
 
+/* Decodes a colour of 3MF, which is sRGB. Its opacity, of which assimp 5.2 makes 0 where the file
+   states none, becomes 1, as assimp states such a material as opaque. */
+static void decode_color(struct aiMaterial *material)
+{
+    float *color = find_floats(material, "$clr.diffuse", 4);
+    for (int i = 0; color && i < 4; i++)
+        color[i] = i < 3 ? image_linear_from_srgb(color[i]) : 1;
+}
+
 /* Divides the colours of an OFF by 255 if one is larger than 1: assimp passes bytes on as they are,
    and the format states no range. */
 static void scale_colors(struct aiMesh *mesh)
@@ -212,10 +226,12 @@ const struct aiExportDataBlob *importer_glb(struct aiScene *scene,
     drop(scene, request->kind, counts);
     for (unsigned i = 0; request->kind == IMPORT_OFF && i < scene->mNumMeshes; i++)
         scale_colors(scene->mMeshes[i]);
-    place(scene, request);
+    place(scene, request, counts);
     for (unsigned i = 0; i < scene->mNumMaterials; i++) {
         shorten_paths(scene->mMaterials[i]);
         restate_highlight(scene->mMaterials[i], request->kind);
+        if (request->kind == IMPORT_3MF)
+            decode_color(scene->mMaterials[i]);
     }
     return aiExportSceneToBlob(scene, "glb2", 0);
 }

@@ -166,7 +166,8 @@ static void note_dropped(struct scene *scene, const char *path, const struct imp
     } unread[] = {{"animation is not played", "animations are not played", counts->animations},
                   {"light is not read", "lights are not read", counts->lights},
                   {"camera is not read", "cameras are not read", counts->cameras},
-                  {"picture is not read", "pictures are not read", counts->pictures}};
+                  {"picture is not read", "pictures are not read", counts->pictures},
+                  {"colour group is not read", "colour groups are not read", counts->color_groups}};
     for (size_t i = 0; i < sizeof unread / sizeof *unread; i++)
         if (unread[i].count)
             scene_note(scene, SCENE_NOTE_WARNING, "%s: %u %s", name, unread[i].count,

@@ -15,7 +15,7 @@ enum {
     LOCAL_BYTES = 30,
     STORED = 0,
     DEFLATED = 8,
-    HEAD_BYTES = 16384, /* bytes of the model file that are read, to find its first tag */
+    HEAD_BYTES = 16384, /* bytes of the model file that are read */
 };
 
 static uint32_t read_le(const uint8_t *at, int bytes)
@@ -64,7 +64,18 @@ static double unit_of(const char *head)
     return 1e-3;
 }
 
-double threemf_unit_m(const uint8_t *data, size_t size_bytes)
+/* In XML any prefix may stand for the namespace of colour groups. */
+static uint32_t count_groups(const char *head)
+{
+    uint32_t count = 0;
+    while ((head = strstr(head, ":colorgroup "))) {
+        head++;
+        count++;
+    }
+    return count;
+}
+
+struct threemf_head threemf_read(const uint8_t *data, size_t size_bytes)
 {
     char head[HEAD_BYTES];
     for (size_t at = 0; size_bytes >= ENTRY_BYTES && at <= size_bytes - ENTRY_BYTES; at++) {
@@ -75,7 +86,7 @@ double threemf_unit_m(const uint8_t *data, size_t size_bytes)
         bool model = name_bytes >= 6 && name_bytes <= size_bytes - at - ENTRY_BYTES &&
                      memcmp(entry + ENTRY_BYTES + name_bytes - 6, ".model", 6) == 0;
         if (model && read_head(data, size_bytes, entry, head))
-            return unit_of(head);
+            return (struct threemf_head){unit_of(head), count_groups(head)};
     }
-    return 1e-3;
+    return (struct threemf_head){.unit_m = 1e-3};
 }

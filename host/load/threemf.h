@@ -1,12 +1,18 @@
-/* The unit of a 3MF, which assimp does not import. */
+/* What assimp does not import of a 3MF. */
 #ifndef LOAD_THREEMF_H
 #define LOAD_THREEMF_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* The model's unit in metres. A millimetre, the format's default, where the model states none or
-   the package cannot be read. */
-double threemf_unit_m(const uint8_t *data, size_t size_bytes);
+/* unit_m: the model's unit in metres; a millimetre, the format's default, where the model states
+   none. color_groups: how many lists of colours stand in the first 16 KiB of the model file. */
+struct threemf_head {
+    double unit_m;
+    uint32_t color_groups;
+};
+
+/* Gives the default unit and no group if the package cannot be read. */
+struct threemf_head threemf_read(const uint8_t *data, size_t size_bytes);
 
 #endif

@@ -406,8 +406,10 @@ static const char *write_3mf(const char *unit, bool deflated)
     struct package package = {0};
     char *model = string_format(
         "<?xml version='1.0' encoding='UTF-8'?><model %s xml:lang='en-US' "
-        "xmlns='http://schemas.microsoft.com/3dmanufacturing/core/2015/02'><resources>"
-        "<basematerials id='1'><base name='painted' displaycolor='#FF8000FF'/></basematerials>"
+        "xmlns='http://schemas.microsoft.com/3dmanufacturing/core/2015/02' "
+        "xmlns:c='http://schemas.microsoft.com/3dmanufacturing/material/2015/02'><resources>"
+        "<c:colorgroup id='4'><c:color color='#FF0000'/></c:colorgroup>"
+        "<basematerials id='1'><base name='painted' displaycolor='#FF8000'/></basematerials>"
         "<object id='2' type='model' pid='1' pindex='0'><mesh><vertices>"
         "<vertex x='0' y='0' z='0'/><vertex x='100' y='0' z='0'/><vertex x='0' y='50' z='200'/>"
         "</vertices><triangles><triangle v1='0' v2='1' v3='2' pid='1' p1='0'/></triangles></mesh>"
@@ -454,8 +456,11 @@ TEST_IN(units_of_3mf, fixture_begin, fixture_end)
         assert_place(scene, i, 2, 0, 2 * rows[i].metres, -rows[i].metres / 2);
     }
     assert_float_equal(material_of(fixture.scene)->diffuse[0], 1, 1e-6);
+    assert_float_equal(material_of(fixture.scene)->diffuse[1], 0.2158605, 1e-6); /* sRGB 128 */
     assert_float_equal(material_of(fixture.scene)->diffuse[2], 0, 1e-6);
+    assert_float_equal(material_of(fixture.scene)->opacity, 1, 0);
     assert_true(fixture_noted("a.3mf: 1 picture is not read"));
+    assert_true(fixture_noted("a.3mf: 1 colour group is not read"));
 }
 
 /* --- parts that are not read ---------------------------------------------------------------- */
