@@ -405,9 +405,10 @@ const struct setting settings_table[] = {
      .commands = IN_RENDER | IN_PROBE | IN_TRACE | IN_HARD},
 
     {"up", 0, NULL,
-     "the axis of a model that points up; auto: as its format\n"
-     "says, and of OBJ, PLY and STL by their shape; trace, bvh,\n"
-     "hard and --triangles take it as it is unless told",
+     "the axis of a model that points up, after an axis that its\n"
+     "format or file states was turned to y; auto: y, and of\n"
+     "OBJ, PLY and STL as their shape says; trace, bvh, hard and\n"
+     "--triangles take it as it is unless told",
      AT(CHOICE, load.up), .values = values_up, .commands = IN_SCENES, .change = SETTING_HITS,
      .need = SETTING_NEEDS_SCENE, .title = "up"},
     {"light", 0, NULL,

@@ -8,7 +8,8 @@
 extern "C" {
 #endif
 
-/* The axis of a model that points up. */
+/* The axis of a model that points up, after an axis that its format or file states (FBX, COLLADA,
+   3MF) was turned to y. */
 typedef enum whit_up {
     WHIT_UP_Y = 0, /* coordinates stay as the file or its format defines them */
     WHIT_UP_X,
