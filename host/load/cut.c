@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/file.h"
 
 whit_result cut_check_stl(struct scene *scene, const char *path, const uint8_t *data,
@@ -32,40 +33,55 @@ whit_result cut_check_stl(struct scene *scene, const char *path, const uint8_t *
 
 enum { OFF_CORNERS_MAX = 9 }; /* assimp 5.2 drops faces with more */
 
-/* The next line with data from `at` on, or the end of the text. */
 static const char *next_line(const char *at)
 {
-    at += strspn(at, " \t\r\n");
-    while (*at == '#') {
-        at += strcspn(at, "\r\n");
-        at += strspn(at, " \t\r\n");
-    }
-    return at;
+    at += strcspn(at, "\n");
+    return at + (*at != 0);
 }
 
-/* The number at `at`, of the corners of a face; -1 unless as many more numbers are in its line. */
-static long long count_corners(const char *at)
+/* Copies the text without comments and blank lines, behind the keyword. NULL: memory ran out. */
+static char *clean_off(const char *text, size_t size_bytes)
+{
+    static const char keyword[] = "OFF\n";
+    char *out = array_alloc(size_bytes + sizeof keyword + 1, 1), *to = out;
+    for (const char *at = text; out && *at;) {
+        at += strspn(at, " \t\r\n");
+        size_t bytes = strcspn(at, "#\r\n");
+        if (bytes && to == out && !isalpha((unsigned char)at[strspn(at, "4")]))
+            to = stpcpy(to, keyword);
+        memcpy(to, at, bytes);
+        to += bytes;
+        if (bytes)
+            *to++ = '\n';
+        at += bytes + strcspn(at + bytes, "\r\n");
+    }
+    if (out)
+        *to = 0;
+    return out;
+}
+
+/* Reads the corners of the face in the line at `at`, of which *count is the number; gives what
+   follows them, or NULL if they are not in this line. */
+static const char *skip_corners(const char *at, long long *count)
 {
     char *end;
-    long long corners = strtoll(at, &end, 10);
+    *count = strtoll(at, &end, 10);
     bool whole = end > at;
     at = end;
-    for (long long i = 0; whole && i < corners; i++) {
+    for (long long i = 0; whole && i < *count; i++) {
         at += strspn(at, " \t");
-        size_t length = strcspn(at, " \t\r\n");
+        size_t length = strcspn(at, " \t\n");
         whole = length > 0;
         at += length;
     }
-    return whole ? corners : -1;
+    return whole && *count >= 0 ? at + strspn(at, " \t") : NULL;
 }
 
-whit_result cut_check_off(struct scene *scene, const char *path, const char *text)
+static whit_result check_off(struct scene *scene, const char *path, const char *text)
 {
     static const char *const names[] = {"vertex", "face"};
-    unsigned long long counts[2], wide = 0;
-    const char *at = next_line(text);
-    if (isalpha((unsigned char)at[strspn(at, "4")])) /* the keyword may be left out */
-        at = next_line(at + strcspn(at, " \t\r\n"));
+    unsigned long long counts[2], wide = 0, coloured = 0;
+    const char *at = text + strcspn(text, " \t\n");
     for (int i = 0; i < 2; i++) {
         char *end;
         counts[i] = strtoull(at, &end, 10);
@@ -75,18 +91,34 @@ whit_result cut_check_off(struct scene *scene, const char *path, const char *tex
     }
     for (int what = 0; what < 2; what++) {
         for (unsigned long long i = 0; i < counts[what]; i++) {
-            at = next_line(at + strcspn(at, "\r\n"));
-            long long corners = what == 1 ? count_corners(at) : 0;
-            if (!*at || corners < 0) {
+            long long corners = 0;
+            at = next_line(at);
+            const char *end = what == 1 ? skip_corners(at, &corners) : at;
+            if (!*at || !end) {
                 log_error(&scene->log, "%s: %s %llu of %llu is cut short or missing", path,
                           names[what], i + 1, counts[what]);
                 return WHIT_ERROR_INPUT;
             }
             wide += corners > OFF_CORNERS_MAX;
+            coloured += what == 1 && *end != '\n';
         }
     }
     if (wide)
         scene_note(scene, SCENE_NOTE_WARNING, "%s: %llu faces of more than %d corners are not read",
                    path_name(path), wide, OFF_CORNERS_MAX);
+    if (coloured)
+        scene_note(scene, SCENE_NOTE_WARNING, "%s: colours of %llu faces are not read",
+                   path_name(path), coloured);
     return WHIT_OK;
+}
+
+whit_result cut_check_off(struct scene *scene, const char *path, uint8_t **data, size_t *size_bytes)
+{
+    char *text = clean_off((const char *)*data, *size_bytes);
+    if (!text)
+        return WHIT_ERROR_MEMORY;
+    free(*data);
+    *data = (uint8_t *)text;
+    *size_bytes = strlen(text);
+    return check_off(scene, path, text);
 }

@@ -1,4 +1,4 @@
-/* Refuses files that are cut short, before assimp gets them. */
+/* Checks and repairs STL and OFF files before assimp gets them. */
 #ifndef LOAD_CUT_H
 #define LOAD_CUT_H
 
@@ -8,9 +8,11 @@
    behind its triangles: these are cut off *size_bytes, and noted. */
 WHIT_CHECK whit_result cut_check_stl(struct scene *scene, const char *path, const uint8_t *data,
                                      size_t *size_bytes);
-/* Logs an error if an OFF (`text` is zero-terminated) has fewer vertices or faces, each in a line
-   of its own, than it says: assimp 5.2 would crash. Notes faces that assimp drops. What is no OFF
-   is left to assimp. */
-WHIT_CHECK whit_result cut_check_off(struct scene *scene, const char *path, const char *text);
+/* Logs an error if an OFF has fewer vertices or faces, each in a line of its own, than it says:
+   assimp 5.2 would crash. Notes faces that assimp drops, and their colours. Removes comments, which
+   assimp takes for vertices or faces, and writes the keyword if it is left out. What is no OFF is
+   left to assimp. Replaces *data (malloc'ed, zero-terminated). */
+WHIT_CHECK whit_result cut_check_off(struct scene *scene, const char *path, uint8_t **data,
+                                     size_t *size_bytes);
 
 #endif

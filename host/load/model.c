@@ -216,7 +216,7 @@ static whit_result prepare(struct scene *scene, const char *path, struct model_f
         return prepare_ply(scene, path, file);
     if (file->kind == IMPORT_STL)
         return cut_check_stl(scene, path, file->data, &file->size_bytes);
-    return file->kind == IMPORT_OFF ? cut_check_off(scene, path, (const char *)file->data)
+    return file->kind == IMPORT_OFF ? cut_check_off(scene, path, &file->data, &file->size_bytes)
                                     : WHIT_OK;
 }
 

@@ -83,6 +83,18 @@ TEST_IN(faces_that_an_off_lacks_are_told, fixture_begin, fixture_end)
     messages.errors = 0;
     load(put_text("a.off", "OFF\n4 2 0\n" SQUARE "3 0 1 2\n10 0 1 2 3 0 1 2 3 0 1\n"));
     assert_true(fixture_noted("a.off: 1 faces of more than 9 corners are not read"));
+    assert_false(fixture_noted("colours"));
+}
+
+/* Comments anywhere, and no keyword: assimp would take comments for faces, and the first 4 for that
+   of `4OFF`. */
+TEST_IN(comments_and_colors_of_faces_of_an_off, fixture_begin, fixture_end)
+{
+    const struct scene *scene = load(
+        put_text("a.off", "# x\r\n4 2 0 # y\r\n" SQUARE "  # z\n \n3 0 1 2 # t\n3 0 2 3 255 0 9"));
+    assert_int_equal(scene->meshes[0].triangle_count, 2);
+    assert_place(scene, 0, 2, 1, 2, 0);
+    assert_true(fixture_noted("a.off: colours of 1 faces are not read"));
 }
 
 /* --- COLLADA -------------------------------------------------------------------------------- */
