@@ -3,18 +3,39 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/text.h"
 
-whit_result cut_check_stl(struct scene *scene, const char *path, const uint8_t *data,
-                          size_t *size_bytes)
+/* Moves `solid` to the begin of the file, and writes all but the names of solids in lower case. */
+static void repair_text(char *text, size_t *size_bytes)
+{
+    size_t blanks = text_mark_bytes(text);
+    blanks += strspn(text + blanks, " \t\r\n");
+    if (strncasecmp(text + blanks, "solid", 5) != 0)
+        return;
+    *size_bytes -= blanks;
+    memmove(text, text + blanks, *size_bytes + 1);
+    bool in_name = false;
+    for (char *at = text; *at; at++) {
+        in_name |= isblank((unsigned char)*at) && at - text >= 5 && memcmp(at - 5, "solid", 5) == 0;
+        in_name &= *at != '\n' && *at != '\r';
+        if (!in_name)
+            *at = (char)tolower((unsigned char)*at);
+    }
+}
+
+whit_result cut_check_stl(struct scene *scene, const char *path, uint8_t *data, size_t *size_bytes)
 {
     enum { HEAD_BYTES = 84, TRIANGLE_BYTES = 50 };
     /* The header of a binary STL is any text, also `solid`. But no text has zero bytes, and every
        count of less than 2^24 has. */
-    if (*size_bytes < HEAD_BYTES || !memchr(data, 0, HEAD_BYTES))
+    if (*size_bytes < HEAD_BYTES || !memchr(data, 0, HEAD_BYTES)) {
+        repair_text((char *)data, size_bytes);
         return WHIT_OK;
+    }
     const uint8_t *at = data + HEAD_BYTES - 4;
     uint64_t count = at[0] | (uint64_t)at[1] << 8 | (uint64_t)at[2] << 16 | (uint64_t)at[3] << 24;
     uint64_t room = (*size_bytes - HEAD_BYTES) / TRIANGLE_BYTES;

@@ -5,8 +5,10 @@
 #include "scene/scene.h"
 
 /* Logs an error if a binary STL has fewer triangles than it says. assimp 5.2 reads none with bytes
-   behind its triangles: these are cut off *size_bytes, and noted. */
-WHIT_CHECK whit_result cut_check_stl(struct scene *scene, const char *path, const uint8_t *data,
+   behind its triangles: these are cut off *size_bytes, and noted. It knows the keywords of a text
+   in lower case alone, and no blank in front of them: writes them so. A zero byte follows `data`,
+   before and after. */
+WHIT_CHECK whit_result cut_check_stl(struct scene *scene, const char *path, uint8_t *data,
                                      size_t *size_bytes);
 /* Logs an error if an OFF has fewer vertices or faces, each in a line of its own, than it says:
    assimp 5.2 would crash. Notes faces that assimp drops, and their colours. Removes comments, which

@@ -398,6 +398,19 @@ static const char *put_stl(uint8_t count, size_t size_bytes)
     return put_data("a.stl", data, size_bytes);
 }
 
+TEST_IN(keywords_of_an_stl_in_upper_case, fixture_begin, fixture_end)
+{
+    const char *path =
+        put_text("a.stl", "\xef\xbb\xbf \n SOLID MyPart\nFACET NORMAL 0 0 1\nOUTER LOOP\n"
+                          "VERTEX 0 0 0\nVERTEX 1.5E+00 0 0\nVERTEX 0 1 0\nENDLOOP\n"
+                          "ENDFACET\nENDSOLID MyPart\n");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    const struct scene_mesh *mesh = &fixture.scene->meshes[0];
+    assert_int_equal(mesh->triangle_count, 1);
+    assert_float_equal(mesh->positions[3 * mesh->indices[1]], 1.5, 0);
+    assert_string_equal(mesh->groups[0].name, "MyPart");
+}
+
 TEST_IN(bytes_behind_the_triangles_of_an_stl_are_noted, fixture_begin, fixture_end)
 {
     assert_int_equal(fixture_load(put_stl(2, 184)), WHIT_OK);
