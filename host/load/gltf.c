@@ -116,6 +116,7 @@ static bool is_known(const char *extension)
 {
     static const char *const known[] = {
         "EXT_mesh_gpu_instancing",
+        "FB_ngon_encoding", /* which triangles were a polygon; assimp writes it */
         "KHR_draco_mesh_compression",
         "KHR_lights_punctual",
         "KHR_materials_anisotropy",
@@ -179,6 +180,17 @@ static void note_unused(const struct gltf *gltf)
         scene_note(gltf->scene, SCENE_NOTE_WARNING,
                    "%s: skins are not animated: %u drawn as their joints stand at rest",
                    path_name(gltf->request->path), skins);
+    const json_t *entry;
+    size_t i;
+    uint32_t at;
+    json_array_foreach(json_object_get(gltf->root, "extensionsUsed"), i, entry)
+    {
+        const char *name = json_string_value(entry);
+        if (name && !is_known(name) &&
+            !key_table_find(&gltf->ignored_names, name, strlen(name), &at))
+            scene_note(gltf->scene, SCENE_NOTE_INFO, "%s: the extension %s is not read",
+                       path_name(gltf->request->path), text_token(name).text);
+    }
 }
 
 /* --- the whole ------------------------------------------------------------------------------ */

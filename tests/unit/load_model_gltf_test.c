@@ -327,10 +327,14 @@ TEST_IN(unlit_is_the_base_color_alone, fixture_begin, fixture_end)
 
 TEST_IN(what_is_not_drawn_is_noted_once, fixture_begin, fixture_end)
 {
-    load(ONE_NODE ",\"materials\":[{\"name\":\"a\",\"extensions\":{\"KHR_x\":{}}},{},"
+    load(ONE_NODE ",\"extensionsUsed\":[\"KHR_x\",\"KHR_y\",7,\"KHR_materials_ior\"],"
+                  "\"materials\":[{\"name\":\"a\",\"extensions\":{\"KHR_x\":{}}},{},"
                   "{\"name\":\"b\",\"extensions\":{\"KHR_x\":{}}}]");
     assert_true(fixture_noted("KHR_x is not drawn: 2 materials, the first is `a`"));
     assert_false(fixture_noted("`b`"));
+    assert_true(fixture_noted("the extension KHR_y is not read"));
+    assert_false(fixture_noted("the extension KHR_x"));
+    assert_false(fixture_noted("ior"));
 }
 
 TEST_IN(glass_without_a_volume_is_thin, fixture_begin, fixture_end)

@@ -52,6 +52,7 @@ TEST_IN(off_has_faces_alone, fixture_begin, fixture_end)
     assert_int_equal(scene->meshes[0].triangle_count, 2);
     assert_int_equal(scene->meshes[0].vertex_count, 4);
     assert_place(scene, 0, 0, 0, 0, 0);
+    assert_false(fixture_noted("extension"));
 }
 
 TEST_IN(colors_of_an_off_are_bytes_or_shares, fixture_begin, fixture_end)
