@@ -20,7 +20,7 @@ static int hex_digit(char c)
     return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
-char *gltf_uri_path(const struct gltf *gltf, const char *uri)
+char *gltf_uri_name(const char *uri)
 {
     char *decoded = string_copy(uri), *to = decoded;
     for (const char *at = uri; decoded && *at; at++) {
@@ -31,12 +31,9 @@ char *gltf_uri_path(const struct gltf *gltf, const char *uri)
         *to++ = escape ? (char)byte : *at;
         at += escape ? 2 : 0;
     }
-    if (!decoded)
-        return NULL;
-    *to = 0;
-    char *path = roots_join(gltf->request->path, decoded);
-    free(decoded);
-    return path;
+    if (decoded)
+        *to = 0;
+    return decoded;
 }
 
 static int base64_digit(char c)
@@ -86,7 +83,9 @@ whit_result gltf_decode_uri(const char *uri, uint8_t **data, size_t *size_bytes)
 static whit_result read_external(struct gltf *gltf, const struct gltf_place *at, const char *uri,
                                  struct gltf_bytes *out)
 {
-    char *path = gltf_uri_path(gltf, uri);
+    char *name = gltf_uri_name(uri);
+    char *path = name ? roots_join(gltf->request->path, name) : NULL;
+    free(name);
     if (!path)
         return WHIT_ERROR_MEMORY;
     const char *why_not = roots_why_not(&gltf->scene->roots, path);

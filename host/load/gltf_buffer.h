@@ -11,7 +11,7 @@ bool gltf_view(const struct gltf *gltf, uint32_t view, const uint8_t **data, siz
 /* Decodes a data: URI (*data is malloc'ed). WHIT_ERROR_INPUT, not logged, when it is not one that
    can be read. */
 WHIT_CHECK whit_result gltf_decode_uri(const char *uri, uint8_t **data, size_t *size_bytes);
-/* The path of a URI that is relative to the file, with %20 and the like decoded; free() it. */
-char *gltf_uri_path(const struct gltf *gltf, const char *uri);
+/* The name of the file in a URI, with %20 and the like decoded; free() it. */
+char *gltf_uri_name(const char *uri);
 
 #endif

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "load/gltf_buffer.h"
 #include "load/gltf_json.h"
+#include "load/picture.h"
 
 /* --- images --------------------------------------------------------------------------------- */
 
@@ -19,7 +20,9 @@ static bool is_file_uri(const char *uri)
 static whit_result load_file_image(struct gltf *gltf, const char *uri, bool visible,
                                    uint32_t *texture)
 {
-    char *path = gltf_uri_path(gltf, uri);
+    char *name = gltf_uri_name(uri);
+    char *path = name ? picture_find_named(&gltf->scene->roots, gltf->request->path, name) : NULL;
+    free(name);
     if (!path)
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;

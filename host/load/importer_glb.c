@@ -8,7 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "image/image.h"
 #include "load/importer_glb.h"
 #include "load/threemf.h"
@@ -88,39 +87,6 @@ static void place(struct aiScene *scene, const struct import_request *request,
         place_3mf(&request->files[0], counts, &placed);
     aiMultiplyMatrix4(&placed, &scene->mRootNode->mTransformation);
     scene->mRootNode->mTransformation = placed;
-}
-
-/* --- textures ------------------------------------------------------------------------------- */
-
-/* Turns backslashes into slashes, and cuts an absolute path, which is of the exporter's machine,
-   down to the file's name. */
-static void shorten_path(struct aiString *path)
-{
-    for (char *c = path->data; *c; c++)
-        *c = *c == '\\' ? '/' : *c;
-    const char *kept = path->data;
-    if (kept[0] == '/' || (kept[0] && kept[1] == ':'))
-        kept = path_name(kept);
-    path->length = (ai_uint32)strlen(kept);
-    memmove(path->data, kept, path->length + 1);
-}
-
-static void shorten_paths(struct aiMaterial *material)
-{
-    for (unsigned i = 0; i < material->mNumProperties; i++) {
-        struct aiMaterialProperty *property = material->mProperties[i];
-        struct aiString path = {0};
-        if (strcmp(property->mKey.data, "$tex.file") != 0 ||
-            aiGetMaterialString(material, property->mKey.data, property->mSemantic,
-                                property->mIndex, &path) != aiReturn_SUCCESS)
-            continue;
-        shorten_path(&path);
-        /* The property has room: the new path is no longer than the old one. Its layout is a
-           length, the text and a zero byte. */
-        memcpy(property->mData, &path.length, sizeof path.length);
-        memcpy(property->mData + sizeof path.length, path.data, path.length + 1);
-        property->mDataLength = (unsigned)(sizeof path.length + path.length + 1);
-    }
 }
 
 /* --- highlights ----------------------------------------------------------------------------- */
@@ -228,7 +194,6 @@ const struct aiExportDataBlob *importer_glb(struct aiScene *scene,
         scale_colors(scene->mMeshes[i]);
     place(scene, request, counts);
     for (unsigned i = 0; i < scene->mNumMaterials; i++) {
-        shorten_paths(scene->mMaterials[i]);
         restate_highlight(scene->mMaterials[i], request->kind);
         if (request->kind == IMPORT_3MF)
             decode_color(scene->mMaterials[i]);

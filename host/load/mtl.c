@@ -274,6 +274,11 @@ static bool read_map(struct reader *reader, struct mtl_entry *entry, enum mtl_ma
     trim_end(name);
     cut_trailing_options(reader, name, &map);
     trim_end(name);
+    size_t length = strlen(name);
+    if (length > 2 && name[0] == '"' && name[length - 1] == '"') {
+        name[length - 1] = 0;
+        name++;
+    }
     if (reader->failed)
         return false;
     if (!*name)

@@ -24,36 +24,12 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "load/mtl.h"
+#include "load/picture.h"
 #include "scene/afford.h"
 
 enum { ALPHA_HALF = 128 };
 
 /* --- textures ------------------------------------------------------------------------------- */
-
-/* The path of a texture named in an MTL: as written if that file exists; else its bare name beside
-   the MTL, since many paths are of the exporter's machine. */
-static char *find_texture(const struct roots *roots, const char *mtl_path, const char *name)
-{
-    char *written = roots_join(mtl_path, name);
-    if (!written || roots_reach(roots, written) == REACH_FILE)
-        return written;
-    free(written);
-    char *slashed = string_copy(name);
-    for (char *c = slashed; c && *c; c++)
-        *c = *c == '\\' ? '/' : *c;
-    if (!slashed)
-        return NULL;
-    char *path = roots_join(mtl_path, slashed);
-    char *bare = path_beside(mtl_path, path_name(slashed));
-    free(slashed);
-    if (path && bare && roots_reach(roots, path) != REACH_FILE &&
-        roots_reach(roots, bare) == REACH_FILE) {
-        free(path);
-        return bare;
-    }
-    free(bare);
-    return path;
-}
 
 /* MTL samples at scale * uv + offset with v upwards; whit's v grows downwards: v = 1 - v_up. */
 static void set_transform(const struct mtl_texture *map, struct scene_texture_use *use)
@@ -126,7 +102,7 @@ static whit_result add_map(struct scene *scene, const struct mtl_entry *entry, e
     const struct mtl_texture *map = &entry->maps[kind];
     if (!map->file)
         return WHIT_OK;
-    char *path = find_texture(&scene->roots, entry->file, map->file);
+    char *path = picture_find_named(&scene->roots, entry->file, map->file);
     if (!path)
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;

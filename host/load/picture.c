@@ -352,6 +352,29 @@ char *picture_find(const struct roots *roots, const char *path)
     return found;
 }
 
+char *picture_find_named(const struct roots *roots, const char *from, const char *name)
+{
+    char *written = roots_join(from, name);
+    if (!written || roots_reach(roots, written) == REACH_FILE)
+        return written;
+    free(written);
+    char *slashed = string_copy(name);
+    for (char *c = slashed; c && *c; c++)
+        *c = *c == '\\' ? '/' : *c;
+    if (!slashed)
+        return NULL;
+    char *path = roots_join(from, slashed);
+    char *bare = path_beside(from, path_name(slashed));
+    free(slashed);
+    if (path && bare && roots_reach(roots, path) != REACH_FILE &&
+        roots_reach(roots, bare) == REACH_FILE) {
+        free(path);
+        return bare;
+    }
+    free(bare);
+    return path;
+}
+
 void picture_inflate(const uint8_t *data, size_t size_bytes, char *out, int out_bytes)
 {
     int bytes = size_bytes < INT_MAX ? (int)size_bytes : INT_MAX;

@@ -399,7 +399,7 @@ TEST_IN(maps_with_options, fixture_begin, fixture_end)
     write_picture("a b.png", 1);
     const struct scene_material *m =
         load_material("newmtl m\nmap_Kd -s 2 4 1 -o 0.25 -clamp on a b.png\n"
-                      "map_Bump -imfchan r a b.png -bm 1.5\nmap_Ks gone.png\n");
+                      "map_Bump -imfchan r \"a b.png\" -bm 1.5\nmap_Ks gone.png\n");
     const struct scene_texture_use *use = &m->textures[SCENE_SLOT_DIFFUSE];
     /* The picture, and its red channel alone for -imfchan. */
     assert_int_equal(fixture.scene->texture_count, 2);

@@ -324,18 +324,19 @@ static const char fbx[] =
     "\t\t\tP: \"DiffuseColor\", \"Color\", \"\", \"A\",0.25,0.5,0.75\n\t\t}\n\t}\n"
     "\tTexture: 14, \"Texture::t\", \"\" {\n\t\tType: \"TextureVideoClip\"\n\t\tVersion: 202\n"
     "\t\tTextureName: \"Texture::t\"\n\t\tMedia: \"\"\n\t\tFileName: \"C:\\\\work\\\\wood.png\"\n"
-    "\t\tRelativeFilename: \"C:\\\\work\\\\wood.png\"\n\t}\n"
+    "\t\tRelativeFilename: \"%s\\\\tex\\\\wood.png\"\n\t}\n"
     "}\n"
     "Connections:  {\n\tC: \"OO\",12,0\n\tC: \"OO\",11,12\n\tC: \"OO\",13,12\n"
     "\tC: \"OP\",14,13, \"DiffuseColor\"\n}\n";
 
-/* Writes an FBX with one face of `corners` corners. */
+/* Writes an FBX with one face of `corners` corners; its texture is named from the folder above or
+   from a drive. */
 static const char *write_fbx(int corners)
 {
     char indices[4096] = "";
     for (int i = 0; i + 1 < corners; i++)
         strcat(indices, i % 2 ? "1," : "0,");
-    own_memory char *text = string_format(fbx, corners, indices);
+    own_memory char *text = string_format(fbx, corners, indices, corners == 3 ? ".." : "C:");
     assert_non_null(text);
     return put_text("a.fbx", text);
 }
@@ -353,8 +354,11 @@ TEST_IN(fbx_in_two_centimetres_and_z_up, fixture_begin, fixture_end)
     assert_place(scene, 0, 1, 1, 0.5, 0);
     assert_place(scene, 0, 2, 0, 2.5, 0);
     assert_float_equal(material_of(scene)->diffuse[1], 0.5, 1e-6);
+    load(write_fbx(4));
+    assert_int_equal(scene->texture_count, 1);
     assert_true(fixture_noted("texture `wood.png`"));
     assert_false(fixture_noted("no such file")); /* it is beside the model */
+    assert_false(fixture_noted("outside"));
 }
 
 /* --- 3MF ------------------------------------------------------------------------------------ */
