@@ -194,6 +194,30 @@ static bool in_a_box(const struct bodies *bodies, const float eye[3], double mar
     return false;
 }
 
+/* Bounds of boxes are off by roundings of instances' transforms to floats. */
+static void fill_sphere(const struct scene_pose *pose, struct gpu_frame *frame)
+{
+    double square = 0.0, size = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        bool some = pose->lo[k] <= pose->hi[k];
+        double half = some ? 0.5 * (pose->hi[k] - pose->lo[k]) : 0.0;
+        frame->scene_center[k] = some ? (float)(pose->lo[k] + half) : 0.0f;
+        square += half * half;
+        size = fmax(size, fabs((double)frame->scene_center[k]) + half);
+    }
+    frame->scene_radius = (float)(sqrt(square) + size * 0x1p-16);
+}
+
+double media_shadow_end(const struct gpu_frame *frame, const double origin[3], double distance)
+{
+    double square = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        double away = origin[k] - (double)frame->scene_center[k];
+        square += away * away;
+    }
+    return isfinite(distance) ? fmin(distance, sqrt(square) + (double)frame->scene_radius) : 0.0;
+}
+
 whit_result media_frame(const whit_log *log, const struct accel *accel,
                         const struct scene_pose *pose, struct bodies *bodies,
                         struct gpu_frame *frame)
@@ -202,6 +226,7 @@ whit_result media_frame(const whit_log *log, const struct accel *accel,
     frame->contact = scene->contact;
     frame->nested = 0;
     frame->eye_media0 = frame->eye_media1 = frame->eye_media2 = frame->eye_media3 = 0;
+    fill_sphere(pose, frame);
     if (!any_medium(scene))
         return WHIT_OK;
     if (scene->material_count > MATERIALS_MAX) {

@@ -6,6 +6,7 @@
 #include "accel/hit_order.h"
 #include "base/same.h"
 #include "oracle/conservative.h"
+#include "picture/media.h"
 #include "reference/hits.h"
 #include "reference/meet.h"
 #include "reference/surface.h"
@@ -27,7 +28,7 @@ struct search {
     struct line line; /* the ray in the space of the tree that is being traversed */
     uint32_t skip_instance, skip_primitive;
     const struct hit *known; /* MODE_NEXT */
-    double light_end;        /* MODE_SHADOW: t of the light, to measure absorption from; 0: a sun */
+    double filter_end;       /* MODE_SHADOW: the t from which absorption is measured */
     double stops[3];
     struct hit best;
 };
@@ -132,7 +133,7 @@ static void add_filter(struct search *s, const struct candidate *m,
     s->stops[2] += stops_of(reference, kept.z);
     for (int c = 0; detail && !place.material->thin_walled && c < 3; ++c) {
         double absorbed =
-            (double)place.material->absorption[c] * (s->light_end - m->t) * STOPS_OF_ABSORPTION;
+            (double)place.material->absorption[c] * (s->filter_end - m->t) * STOPS_OF_ABSORPTION;
         if (reference->params.whole_stops)
             absorbed = floor(absorbed + 0.5);
         s->stops[c] += m->front ? absorbed : -absorbed;
@@ -227,9 +228,10 @@ struct shadow hit_shadow(const struct reference *reference, const struct shadow_
     struct search s = search_begin(reference, MODE_SHADOW, ray->origin, ray->dir, ray->distance);
     s.skip_instance = ray->skip_instance;
     s.skip_primitive = ray->skip_primitive;
-    s.light_end = isfinite(ray->distance) ? ray->distance : 0.0;
+    s.filter_end = media_shadow_end(&reference->frame, s.world_origin, ray->distance);
     conservative_walk_run(&s.walk);
-    struct shadow out = {.blocked = s.best.primitive != HIT_NONE, .blocker = s.best};
+    struct shadow out = {
+        .blocked = s.best.primitive != HIT_NONE, .blocker = s.best, .filter_end = s.filter_end};
     memcpy(out.stops, s.stops, sizeof out.stops);
     return out;
 }

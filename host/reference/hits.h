@@ -20,6 +20,7 @@ struct shadow {
     bool blocked;
     struct hit blocker; /* if `blocked` */
     double stops[3];    /* light lost in filters, in 1/64 stops; may be negative */
+    double filter_end;  /* the t from which absorption is measured */
 };
 
 struct shadow hit_shadow(const struct reference *reference, const struct shadow_ray *ray);

@@ -55,12 +55,12 @@ static struct dvec3 smooth_lift(const struct reference *reference, const struct 
 
 /* The share of light that filters on the way and the media around the receiver transmit. */
 static struct dvec3 share_of(const struct reference *reference, const struct receiver *at,
-                             const struct shadow_ray *ray, const struct shadow *shadow)
+                             const struct shadow *shadow)
 {
-    double end = isfinite(ray->distance) ? ray->distance : 0.0, share[3];
+    double share[3];
     double around[3] = {at->absorption.x, at->absorption.y, at->absorption.z};
     for (int c = 0; c < 3; ++c) {
-        double stops = around[c] * end * STOPS_OF_ABSORPTION;
+        double stops = around[c] * shadow->filter_end * STOPS_OF_ABSORPTION;
         if (reference->params.whole_stops)
             stops = floor(stops + 0.5);
         stops = fmax(shadow->stops[c] + stops, 0.0);
@@ -126,7 +126,7 @@ static struct dvec3 light_share(struct tracer *tracer, const struct receiver *at
         ray.dir = d3_unit_or(way, ray.dir);
     }
     struct shadow shadow = hit_shadow(reference, &ray);
-    struct dvec3 share = shadow.blocked ? d3_all(0.0) : share_of(reference, at, &ray, &shadow);
+    struct dvec3 share = shadow.blocked ? d3_all(0.0) : share_of(reference, at, &shadow);
     ++tracer->rays[RAY_SHADOW];
     if (tracer->records)
         record_shadow(tracer, at, &ray, &shadow, share, light, point);

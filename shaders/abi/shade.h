@@ -173,8 +173,10 @@ struct gpu_frame {
     gpu_float bailout_shadow; /* shadow rays that can add no more than this share of their light are
                                  not traced */
     gpu_uint pad0;
+    gpu_vec3 scene_center; /* a sphere around all instances */
+    gpu_float scene_radius;
 };
-GPU_ASSERT_SIZE(gpu_frame, 224)
+GPU_ASSERT_SIZE(gpu_frame, 240)
 GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
 /* The fields of gpu_frame that differ between the views of a picture (SPEC_VIEWS). Its views lie

@@ -58,18 +58,17 @@ Arrival arrive(bool alive, Lit lit, gpu_light light, uint point)
     return a;
 }
 
-// The share of light that passes along a shadow ray of length `t_max`. `blocker`: its hit by
-// TRAVERSE_SHADOW; `absorption`: of the media where the ray starts.
-vec3 passing_share(Hit blocker, vec3 absorption, float t_max)
+// The share of light that passes along a shadow ray. `blocker`: its hit by TRAVERSE_SHADOW;
+// `absorption`: of the media where the ray starts.
+vec3 passing_share(Hit blocker, vec3 absorption)
 {
     if (blocker.primitive != HIT_NONE)
         return vec3(0.0);
     if (SPEC_FILTERS == 0u)
         return vec3(1.0);
     ivec3 depth = blocker.filter_depth;
-    float end = t_max < FLOAT_LARGEST ? t_max : 0.0;
     if (SPEC_FILTER_DETAIL != FILTERS_PLAIN && SPEC_ABSORPTION != 0u)
-        depth = max(depth + absorption_depth(absorption, end), ivec3(0));
+        depth = max(depth + absorption_depth(absorption, blocker.filter_end), ivec3(0));
     return exp2(vec3(depth) * (-1.0 / SHADOW_DEPTH_SCALE));
 }
 

@@ -7,20 +7,32 @@
 #include "media.glsl"
 #include "surface.glsl"
 
-// Absorption along a shadow ray is counted relative to where the ray ends: at the light, or for
-// suns at t = 0. A surface where the ray enters a body adds what the body would absorb from there
-// to the ray's end, a surface where it leaves subtracts it, and a ray that starts in a body starts
-// with all of it (surrounding_absorption). What remains is the absorption of the path inside,
-// wherever the ray's ends are. No sun is inside a body, so its ray may end at 0. Open meshes: a ray
-// that enters and never leaves is absorbed up to the light, as a camera ray that stays in the
+// Absorption along a shadow ray is counted relative to one t of the ray, filter_end, behind which it
+// enters and leaves no body. A surface where the ray enters a body adds what the body would absorb
+// from there to that t, a surface where it leaves subtracts it, and a ray that starts in a body
+// starts with all of it (surrounding_absorption). What remains is the absorption of the path inside,
+// wherever the ray's ends are. That t is the light, or, where the ray leaves the sphere around the
+// scene before, a point behind the sphere: the sum of distances to a light far away would be rounded
+// by more than the path inside. No sun is inside a body, so its ray may count from 0. Open meshes: a
+// ray that enters and never leaves is absorbed up to filter_end, as a camera ray that stays in the
 // medium is; a ray that leaves without having entered gets a sum below 0, which counts as 0.
+float filter_end(vec3 origin, float t_max)
+{
+    float behind = distance(origin, frame.scene_center) + frame.scene_radius;
+    return t_max < FLOAT_LARGEST ? min(t_max, behind) : 0.0;
+}
+
 const float DEPTH_OF_ABSORPTION = 92.3324826; // 64 / ln 2
-const float DEPTH_MAX = 1073741824.0;        // 2^30; sums may wrap around and back
+// Depths from 2^29 on grow by 2^24 for each doubling, so that they do not overflow, and a surface
+// behind another still has another depth. Sums may wrap around and back.
+const float DEPTH_LINEAR = 536870912.0, DEPTH_MAX = 2305843009213693952.0; // 2^29, 2^61
 
 ivec3 absorption_depth(vec3 absorption, float way)
 {
-    vec3 depth = absorption * (way * DEPTH_OF_ABSORPTION);
-    return ivec3(floor(clamp(depth, vec3(-DEPTH_MAX), vec3(DEPTH_MAX)) + 0.5));
+    vec3 depth = min(absorption * (abs(way) * DEPTH_OF_ABSORPTION), vec3(DEPTH_MAX));
+    ivec3 above = max(floatBitsToInt(depth) - floatBitsToInt(DEPTH_LINEAR), ivec3(0));
+    ivec3 whole = ivec3(floor(min(depth, vec3(DEPTH_LINEAR)) + 0.5)) + 2 * above;
+    return way < 0.0 ? -whole : whole;
 }
 
 // The sum of the absorption of all media around a point. Where media overlap, each of them absorbs

@@ -430,6 +430,8 @@ void traverse_packets(const uint mode, float t_min, uint root, uint root8, vec3 
         packet_alive[r] = packet_alive[r] && is_usable(packet_origin[r], packet_dir[r]);
         some = some || packet_alive[r];
         packet_hits[r] = make_hit(packet_t_max[r]);
+        if (mode == TRAVERSE_SHADOW)
+            packet_hits[r].filter_end = filter_end(packet_origin[r], packet_t_max[r]);
         end_ray(!packet_alive[r], r);
         vec3 origin = packet_alive[r] ? packet_origin[r] : vec3(0.0);
         packet_rays[r] = make_ray_setup(SPEC_BEAM == BEAM_STARTS ? eye : origin,

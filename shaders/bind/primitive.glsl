@@ -39,6 +39,7 @@ struct Hit {
     uint primitive; // index in its mesh, or HIT_NONE
     uint instance;
     ivec3 filter_depth; // TRAVERSE_SHADOW: sum over the filters met
+    float filter_end;   // the t from which their absorption is measured
     uint status;
 };
 
@@ -56,6 +57,7 @@ Hit make_hit(float t_max)
     hit.primitive = HIT_NONE;
     hit.instance = HIT_NONE;
     hit.filter_depth = ivec3(0);
+    hit.filter_end = 0.0;
     hit.status = 0u;
     return hit;
 }

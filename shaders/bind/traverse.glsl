@@ -13,11 +13,13 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 
 // Defined by the kernel: the optical depth, in units of 1/64 stop, that a filter with
 // TRIANGLE_FILTER_DETAIL adds to a shadow ray that hits it from the front or from behind. `way`:
-// the distance from there to the light; for suns the distance to the ray's origin, negated. `own`:
-// the depth in its record. A surface where the ray enters or leaves a medium may add a negative
+// the distance from there to the filter_end of the ray. `own`: the depth in its record. A surface where the ray enters or leaves a medium may add a negative
 // depth; a sum below 0 counts as 0.
 ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front,
                     ivec3 own);
+
+// Defined by the kernel: the t from which absorption along a shadow ray is measured.
+float filter_end(vec3 origin, float t_max);
 
 // Whether a hit comes behind the known one (TRAVERSE_NEXT); at NUMERICS_EXACT keys are compared.
 bool is_behind(float t, uint instance, uint primitive, uint known_instance, uint known_primitive)
@@ -278,9 +280,9 @@ void add_filter(Candidate m, vec2 uv, uint flags, uint shadow, uint instance, ui
                 inout Hit hit)
 {
     ivec3 depth = ivec3(uvec3(shadow & 1023u, (shadow >> 10) & 1023u, (shadow >> 20) & 1023u));
-    float end = hit.t < FLOAT_LARGEST ? hit.t : 0.0; // end of the ray: no hit has shortened it yet
     if (SPEC_FILTER_DETAIL != FILTERS_PLAIN && (flags & TRIANGLE_FILTER_DETAIL) != 0u)
-        depth = filter_detail(instance, primitive, uv.x, uv.y, end - m.t, m.front, depth);
+        depth = filter_detail(instance, primitive, uv.x, uv.y, hit.filter_end - m.t, m.front,
+                              depth);
     if (m.owned) // an edge that two triangles share counts once
         hit.filter_depth += depth;
 }
@@ -626,6 +628,8 @@ Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, u
              uint skip_instance, uint skip_primitive)
 {
     Hit hit = make_hit(t_max);
+    if (mode == TRAVERSE_SHADOW)
+        hit.filter_end = filter_end(origin, t_max);
     if (SPEC_COUNT != 0u)
         traversal_cost = gpu_cost(1u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
     if (!is_usable(origin, dir))

@@ -199,7 +199,7 @@ vec3 visible_from(vec3 origin, vec3 dir, float distance, uvec2 skip, vec3 absorp
         add_shape(origin, dir, is_usable(origin, dir), blocker);
     hook_status |= blocker.status;
     hook_traced++;
-    return passing_share(blocker, absorption, distance);
+    return passing_share(blocker, absorption);
 }
 
 // visible_from for a surface, which does not block itself.

@@ -24,6 +24,11 @@ ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, 
 {
     return own;
 }
+
+float filter_end(vec3 origin, float t_max)
+{
+    return 0.0;
+}
 #define miss whit_miss
 #include "../hook/miss.glsl"
 #undef miss

@@ -33,7 +33,7 @@ vec3 light_share(uint r, bool wanted, Lit lit, inout uint status)
         add_cost(slot, RAY_SHADOW);
     }
     status |= wanted ? blocker.status : 0u;
-    return passing_share(blocker, lit.absorption, packet_t_max[r]);
+    return passing_share(blocker, lit.absorption);
 }
 
 Arrival arrival_of[SPEC_PACKET_RAYS];

@@ -41,6 +41,11 @@ ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, 
     return own;
 }
 
+float filter_end(vec3 origin, float t_max)
+{
+    return 0.0;
+}
+
 // (v1 - v0) x (v2 - v0)
 vec3 triangle_normal(uint row)
 {

@@ -234,14 +234,38 @@ static struct scene *touching_smooth_bodies(void)
     return scene;
 }
 
-TEST(touching_smooth_bodies_agree)
+/* Renders and destroys a scene. At most 0.2 % of the pixels may differ, for edges. */
+static void assert_agrees(const char *name, struct scene *scene)
 {
     struct reference_params params = {.picture = {.width = SIDE, .height = SIDE, .depth = 3},
                                       .whole_stops = true};
-    own_fixture f = fixture_open(touching_smooth_bodies(), NULL, &params.picture);
+    own_fixture f = fixture_open(scene, NULL, &params.picture);
     own_image device = render(&f);
     own_picture reference = reference_picture(f.accel, &params);
     struct difference d = compare(&device, &reference.color);
-    print_message("  %u of %u pixels over 1e-3, largest %.2g\n", d.over, SIDE * SIDE, d.largest);
+    print_message("  %s: %u of %u pixels over 1e-3, largest %.2g\n", name, d.over, SIDE * SIDE,
+                  d.largest);
     assert_true(d.over * 500 <= SIDE * SIDE);
+}
+
+TEST(touching_smooth_bodies_agree)
+{
+    assert_agrees("touching", touching_smooth_bodies());
+}
+
+/* ---- Where floats are short of digits ---- */
+
+/* The shadow of an absorbing ball under a lamp far away. */
+static struct scene *far_lamp(void)
+{
+    struct scene *scene = dark_scene((double[]){0, 2, 5}, (double[]){0, 0.7, 0});
+    add_object(scene, mesh_plane(8), matte(0.7f, 0.7f, 0.7f), 0, 0, 0);
+    add_object(scene, true_ball(1), glass(1.3f, 0), 0, 1.01, 0);
+    scene_put_lamp(scene, -4e6, 1e7, 5e6, 1e14f);
+    return scene;
+}
+
+TEST(scarce_digits_agree)
+{
+    assert_agrees("far lamp", far_lamp());
 }

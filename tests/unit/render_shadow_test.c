@@ -77,12 +77,12 @@ struct block {
     double seen;   /* length of the camera ray's way through the glass */
 };
 
-static struct scene *block_scene(const struct block *block)
+static struct scene *block_scene(const struct block *block, float density)
 {
     struct scene *scene = floor_scene(eye_height);
     struct scene_material m = matte(0, 0, 0);
     set_rgb(m.transmission, 1, 1, 1);
-    memcpy(m.absorption, sigma, sizeof sigma);
+    set_rgb(m.absorption, density * sigma[0], density * sigma[1], density * sigma[2]);
     m.ior = 1.0f;
     add_object(scene, mesh_box(6, block->height, 6), m, 0, block->y, 0);
     if (block->lamp > 0)
@@ -104,6 +104,7 @@ TEST_BY_TURNS(bodies_absorb_along_the_way, 1, 4)
         {"sun", 1, 2, &beside, {0, -1, 0}, 0, 2, 2, 1, 0},
         {"slanting sun", 1, 2, &beside, {1, -2, 0}, 0, 2, 2 / slant, slant, 0},
         {"lamp", 1, 2, &beside, {0}, 5, 50, 2, 1, 0},
+        {"lamp far above", 1, 2, &beside, {0}, 1e7, 2e14f, 2, 1, 0},
         {"lamp inside", 2, 2, &beside, {0}, 2, 8, 2, 1, 0},
         {"sun on the floor inside", 2, 0, &above, {0, -1, 0}, 0, 2, 2, 1, 1},
         {"lamp on the floor inside", 2, 0, &above, {0}, 2, 8, 2, 1, 1},
@@ -113,11 +114,14 @@ TEST_BY_TURNS(bodies_absorb_along_the_way, 1, 4)
         const struct block *b = &blocks[i];
         const whit_renderer_params params = {
             .width = 1, .height = 1, .depth = 4, .camera = *b->camera};
-        own_image image = color_of(block_scene(b), NULL, &params);
+        own_image image = color_of(block_scene(b, 1.0f), NULL, &params);
+        own_image dark = color_of(block_scene(b, 1e10f), NULL, &params);
         print_message("  %s\n", b->name);
-        for (int c = 0; c < 3; ++c)
+        for (int c = 0; c < 3; ++c) {
             assert_near(image.pixels[c], b->light * exp(-(double)sigma[c] * (b->length + b->seen)),
                         2.0 * half_a_step + 1e-5);
+            assert_near(dark.pixels[c], 0.0, 1e-5);
+        }
     }
 }
 
