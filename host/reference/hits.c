@@ -73,6 +73,7 @@ static bool is_reached(const struct search *s, const struct candidate *m,
            hit_comes_before(place, place_of(&s->best));
 }
 
+/* Compares as floats, since the cutoff is one, and an opacity may be meant to equal it. */
 static bool is_solid(const struct search *s, const struct candidate *m,
                      const struct gpu_triangle *record, uint32_t instance)
 {
@@ -80,8 +81,8 @@ static bool is_solid(const struct search *s, const struct candidate *m,
         return true;
     struct surface place = surface_texture_place(s->reference, instance, m, record);
     return place.material->alpha != SCENE_ALPHA_MASK ||
-           texture_opacity(s->reference, &place) * place.alpha >=
-               (double)place.material->alpha_cutoff;
+           (float)(texture_opacity(s->reference, &place) * place.alpha) >=
+               place.material->alpha_cutoff;
 }
 
 static double stops_of(const struct reference *reference, double kept)

@@ -161,6 +161,13 @@ vec2 place_in_picture(gpu_texture t, vec2 uv)
     return vec2(reduce_coordinate(at.x, t.wrap & 3u), reduce_coordinate(at.y, (t.wrap >> 2) & 3u));
 }
 
+// A value from a to b; their own where they are equal, as an alpha that equals the cutoff may be,
+// which roundings of mix() would cut out.
+vec4 between(vec4 a, vec4 b, float part)
+{
+    return a + (b - a) * part;
+}
+
 // Samples a level of texture `t`, which has `size` texels from word `first` on, at a place in its
 // image.
 vec4 sample_texels(gpu_texture t, uint first, ivec2 size, vec2 at)
@@ -179,9 +186,9 @@ vec4 sample_texels(gpu_texture t, uint first, ivec2 size, vec2 at)
         return color;
     uint x1 = uint(wrap_texel(texel.x + 1, size.x, wrap.x));
     uint y1 = first + uint(wrap_texel(texel.y + 1, size.y, wrap.y) * size.x);
-    vec4 top = mix(color, fetch_texel(y0 + x1, srgb), part.x);
-    vec4 bottom = mix(fetch_texel(y1 + x0, srgb), fetch_texel(y1 + x1, srgb), part.x);
-    return mix(top, bottom, part.y);
+    vec4 top = between(color, fetch_texel(y0 + x1, srgb), part.x);
+    vec4 bottom = between(fetch_texel(y1 + x0, srgb), fetch_texel(y1 + x1, srgb), part.x);
+    return between(top, bottom, part.y);
 }
 
 ivec2 texture_size(gpu_texture t)
@@ -225,7 +232,7 @@ vec4 sample_minified(gpu_texture t, vec2 uv, float texels)
     do {
         uint first = k == 0u ? t.first : fetch_texel_word(table + k);
         vec4 texel = sample_texels(t, first, max(size >> int(k), ivec2(1)), at);
-        vec4 mixed = second ? mix(color, texel, part) : texel;
+        vec4 mixed = second ? between(color, texel, part) : texel;
         color = more ? mixed : color;
         more = more && !second && part > 0.0;
         second = true;

@@ -269,3 +269,39 @@ TEST(scarce_digits_agree)
 {
     assert_agrees("far lamp", far_lamp());
 }
+
+/* A floor in the whole view, with the opacity `texel` / 255 times `alpha`. */
+static struct scene *cut_floor(uint8_t texel, float alpha, float cutoff)
+{
+    struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
+    struct scene_material m = unlit(1, 1, 1);
+    struct scene_mesh plane = mesh_plane(40);
+    const uint8_t rgba[8] = {255, 255, 255, texel, 255, 255, 255, texel};
+    m.alpha = SCENE_ALPHA_MASK;
+    m.alpha_cutoff = cutoff;
+    use_smooth(&m, SCENE_SLOT_DIFFUSE, scene_put_texture(scene, 2, 1, rgba), 9, SCENE_WRAP_REPEAT);
+    if (alpha < 1.0f) {
+        plane = coloured(plane);
+        for (uint32_t i = 0; i < 4 * plane.vertex_count; ++i)
+            plane.colors[i] = i % 4 == 3 ? alpha : 1.0f;
+    }
+    add_object(scene, plane, m, 0, 0, 0);
+    return scene;
+}
+
+TEST(opacities_that_equal_the_cutoff_are_solid)
+{
+    static const struct {
+        uint8_t texel;
+        float alpha, cutoff;
+    } floors[] = {{102, 1, 0.4f}, {204, 1, 0.8f}};
+    for (size_t i = 0; i < sizeof floors / sizeof *floors; ++i) {
+        const struct reference_params params = {.picture = {.width = SIDE, .height = SIDE}};
+        struct scene *scene = cut_floor(floors[i].texel, floors[i].alpha, floors[i].cutoff);
+        own_fixture f = fixture_open(scene, NULL, &params.picture);
+        own_image device = render(&f);
+        own_picture reference = reference_picture(f.accel, &params);
+        for (size_t k = 0; k < SIDE * SIDE; ++k)
+            assert_true(device.pixels[4 * k] == 1.0f && reference.color.pixels[4 * k] == 1.0f);
+    }
+}
