@@ -61,13 +61,14 @@ static void take_colors(struct surface *s)
     s->alpha = 1.0;
     if (s->sphere || !s->mesh->colors)
         return;
-    double rgba[4] = {0};
-    const double weights[3] = {1.0 - s->u - s->v, s->u, s->v};
-    for (size_t k = 0; k < 3; ++k) {
-        const float *color =
-            &s->mesh->colors[4 * (size_t)s->mesh->indices[3 * (size_t)s->primitive + k]];
-        for (int c = 0; c < 4; ++c)
-            rgba[c] += weights[k] * clamp_unit((double)color[c]);
+    const uint32_t *corners = &s->mesh->indices[3 * (size_t)s->primitive];
+    double rgba[4];
+    for (size_t c = 0; c < 4; ++c) {
+        double first = clamp_unit((double)s->mesh->colors[4 * (size_t)corners[0] + c]);
+        double second = clamp_unit((double)s->mesh->colors[4 * (size_t)corners[1] + c]);
+        double third = clamp_unit((double)s->mesh->colors[4 * (size_t)corners[2] + c]);
+        /* In differences, so that three equal colours give exactly that colour. */
+        rgba[c] = first + (second - first) * s->u + (third - first) * s->v;
     }
     s->color = d3(rgba[0], rgba[1], rgba[2]);
     s->alpha = rgba[3];

@@ -28,6 +28,7 @@ struct material_upload {
     uint32_t *use_images; /* by use: index in `images` */
     uint32_t use_count, use_capacity, use_image_capacity;
     struct gpu_material *materials;
+    float cutoff_slack; /* of opacities: how far they may be rounded down */
 };
 
 static uint32_t find_image(struct material_upload *up, uint32_t texture, enum mipmap_kind kind)
@@ -199,7 +200,7 @@ static whit_result add_material(struct material_upload *up, uint32_t index)
     out->metallic = m->metallic;
     out->opacity = m->opacity;
     out->normal_scale = m->normal_scale;
-    out->alpha_cutoff = m->alpha_cutoff;
+    out->alpha_cutoff = m->alpha_cutoff - up->cutoff_slack;
     out->specular_level = m->specular_level;
     const struct {
         enum scene_slot slot;
@@ -408,10 +409,21 @@ static void place_uses(struct material_upload *up)
     }
 }
 
+/* A bit more than half a step of vertex colours, which upload.c packs to 16 bits: their alpha may
+   be meant to equal the cutoff. */
+static float find_cutoff_slack(const struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->mesh_count; ++i) {
+        if (scene->meshes[i].colors)
+            return 0x1.1p-17f;
+    }
+    return 0.0f;
+}
+
 whit_result material_records_init(struct renderer *renderer, struct material_records *records)
 {
     const struct scene *scene = renderer->scene;
-    struct material_upload up = {.renderer = renderer};
+    struct material_upload up = {.renderer = renderer, .cutoff_slack = find_cutoff_slack(scene)};
     *records = (struct material_records){0};
     up.materials = array_alloc_zeroed(scene->material_count, sizeof *up.materials);
     whit_result result = up.materials ? WHIT_OK : render_no_memory(renderer, "materials");

@@ -294,7 +294,11 @@ TEST(opacities_that_equal_the_cutoff_are_solid)
     static const struct {
         uint8_t texel;
         float alpha, cutoff;
-    } floors[] = {{102, 1, 0.4f}, {204, 1, 0.8f}};
+    } floors[] = {{102, 1, 0.4f},
+                  {204, 1, 0.8f},
+                  {255, 0.75f, 0.75f},
+                  {255, 0.35f, 0.35f},
+                  {255, 0.95f, 0.95f}};
     for (size_t i = 0; i < sizeof floors / sizeof *floors; ++i) {
         const struct reference_params params = {.picture = {.width = SIDE, .height = SIDE}};
         struct scene *scene = cut_floor(floors[i].texel, floors[i].alpha, floors[i].cutoff);
