@@ -35,7 +35,7 @@ static whit_result dispatch(struct renderer *renderer, const struct pass *pass, 
     commands_barrier(commands);
     commands_bind(commands, pass->pipeline, pass->set);
     commands_push(commands, &chunk, sizeof chunk);
-    commands_dispatch(commands, groups, tests, 1);
+    commands_dispatch(commands, groups, 1, tests);
     commands_barrier(commands);
     result = commands_submit(commands);
     if (result == WHIT_OK)

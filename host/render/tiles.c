@@ -66,9 +66,12 @@ whit_result status_check(struct target *target)
         {STATUS_MEDIUM_STACK_OVERFLOW, "a ray was in more media at once than its stack holds"},
         {STATUS_UNFINISHED_LOOP, "a loop over lights was cut short (the driver ends long loops)"},
         {STATUS_FUEL, "a loop of the shader took more iterations than it may"},
+        {STATUS_CUT_LOOPS, "loops of the shader, with those of trace() and visible(), took more "
+                           "iterations than the driver allows all loops of a kernel together "
+                           "(65,535 on lavapipe)"},
         {STATUS_SHAPE, "the answer for the shader's shape is wrong"},
     };
-    char text[2048] = "", where[768] = "", loop[768] = "", shape[768] = "";
+    char text[2048] = "", where[768] = "", loop[768] = "", shape[768] = "", file[768] = "";
     if (word & STATUS_NON_FINITE)
         describe_non_finite(target, where, sizeof where);
     if (word & STATUS_FUEL)
@@ -77,13 +80,21 @@ whit_result status_check(struct target *target)
         hooks_describe_shape(target, shape, sizeof shape);
     if (word & (STATUS_FUEL | STATUS_SHAPE))
         result = hooks_clear_status(target); /* or the next picture would name the same place */
+    if (word & STATUS_CUT_LOOPS)
+        hooks_describe_file(target->renderer, file, sizeof file);
+    /* Only the cause is told: what loops that were cut short have made follows from it. */
+    if (word & (STATUS_FUEL | STATUS_CUT_LOOPS))
+        word &= ~(STATUS_UNFINISHED_TRAVERSAL | STATUS_UNFINISHED_LOOP | STATUS_SHAPE);
+    if (word & STATUS_FUEL)
+        word &= ~STATUS_CUT_LOOPS;
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
         if (word & reasons[i].bit)
             text_add(text, sizeof text, "%s%s%s", text[0] ? "; " : "", reasons[i].text,
-                     reasons[i].bit == STATUS_NON_FINITE ? where
-                     : reasons[i].bit == STATUS_FUEL     ? loop
-                     : reasons[i].bit == STATUS_SHAPE    ? shape
-                                                         : "");
+                     reasons[i].bit == STATUS_NON_FINITE  ? where
+                     : reasons[i].bit == STATUS_FUEL      ? loop
+                     : reasons[i].bit == STATUS_SHAPE     ? shape
+                     : reasons[i].bit == STATUS_CUT_LOOPS ? file
+                                                          : "");
     }
     log_error(&target->renderer->log, "the result is not to be trusted: %s", text);
     return result == WHIT_OK ? WHIT_ERROR_STATUS : result;

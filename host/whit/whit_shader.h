@@ -167,7 +167,8 @@ typedef struct whit_check_result {
    called, with the renderer's scene bound. `results`: one for each of whit_shader_info.checks.
    *compile_ms: the driver's time to compile the kernel; *run_ms: the time to run it and read
    results back. WHIT_ERROR_STATUS where a loop ran out of fuel (whit_shader_info.fuel), logged with
-   FILE:line; WHIT_ERROR_USAGE without a device or tests; WHIT_ERROR_DEVICE, WHIT_ERROR_MEMORY. */
+   FILE:line, or the driver ended loops early; WHIT_ERROR_USAGE without a device or tests;
+   WHIT_ERROR_DEVICE, WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result whit_renderer_run_tests(whit_renderer *renderer, whit_check_result *results,
                                                double *compile_ms, double *run_ms);
 

@@ -174,6 +174,7 @@ GPU_ASSERT_SIZE(gpu_work, 16)
 /* A queue between stages was full. This is no error: the tile is drawn again in smaller ones. */
 #define STATUS_QUEUE_FULL 128u
 #define STATUS_FUEL 256u /* a loop of a user's function took more iterations than it may */
+#define STATUS_CUT_LOOPS 1024u /* loops behind a user's functions no longer have a second iteration */
 #define STATUS_SHAPE 512u /* a user's intersect() gave an answer that is not allowed: SHAPE_* */
 /* The status of a single ray, never in the status word: the ray is deferred, as floats do not
    decide its hit (without SPEC_SETTLES). The rest of its result is ignored. */

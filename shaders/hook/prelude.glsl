@@ -45,8 +45,18 @@ void count_camera(uint before, bool of_use)
         hook_traced = before;
 }
 
+// Call it behind all loops of the kernel. The first loop here asks for a second iteration. If it has
+// none, the driver may have ended loops of the user's before they were done (lib/turn.glsl).
 void report_hooks()
 {
+    uint turn = 0u;
+    bool more = false;
+    do {
+        turn++;
+        more = turn < frame.turns;
+    } while (another_iteration(more));
+    if (more)
+        report_status(STATUS_CUT_LOOPS);
     if (hook_loop != 0u) {
         atomicMax(status_loop, hook_loop + (HOOK_KERNEL << 16));
         report_status(STATUS_FUEL);

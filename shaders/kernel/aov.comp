@@ -38,7 +38,7 @@ void main()
     }
     if (alive) {
         report_status(hook_status);
-        report_hooks();
         tally_traced(hook_traced);
+        report_hooks();
     }
 }

@@ -142,7 +142,7 @@ void main()
         list_deferred_rays(waits, ray_id);
     report_status(status);
 #ifdef HOOKS
-    report_hooks();
     tally_traced(hook_traced);
+    report_hooks();
 #endif
 }

@@ -81,8 +81,8 @@ void call_functions(uint id, bool alive, uint row)
     }
     if (alive) {
         report_status(hook_status);
-        report_hooks();
         tally_traced(hook_traced);
+        report_hooks();
     }
 }
 

@@ -277,10 +277,8 @@ void main()
     if (has_bounds_alone())
         list_deferred(alive && must_wait(hook_status), id);
     alive = alive && !must_wait(hook_status);
-    if (alive) {
-        report_hooks();
+    if (alive)
         tally_traced(hook_traced);
-    }
 #endif
     if (CALLS_RAYS)
         tally_cuts(alive ? calls.cuts : 0u);
@@ -304,4 +302,8 @@ void main()
     if (SPEC_LIGHTS != 0u && (SPEC_CATCHERS != 0u || (SPEC_HOOKS & HOOK_SHADE) == 0u))
         ask_lights(alive && seen && !o.unlit && (!catcher || some), id, met, o, catcher, status);
     report_status(alive ? status : 0u);
+#ifdef HOOKS
+    if (alive)
+        report_hooks();
+#endif
 }

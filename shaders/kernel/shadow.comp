@@ -148,10 +148,10 @@ void main()
     if (has_bounds_alone())
         list_deferred_rays(waits, item);
     report_status(status);
-#ifdef HOOKS
-    report_hooks();
-#endif
     rays = add_up_lanes(rays);
     if (SPEC_SHADOWS != 0u && is_first_lane() && rays != 0u)
         atomicAdd(generations[chunk.generation].lists[chunk.list].shadow_rays, rays);
+#ifdef HOOKS
+    report_hooks();
+#endif
 }

@@ -128,7 +128,8 @@ void rays(uint seed)
 {
     Surface met;
     float t;
-    check(trace(vec3(0.0, 3.0, 0.0), vec3(0.0, -1.0, 0.0), met, t));
+    vec2 at = vec2(random(1u), random(2u)) * 2.0 - 1.0;
+    check(trace(vec3(at.x, 3.0, at.y), vec3(0.0, -1.0, 0.0), met, t));
 }
 END
     expect 0 "tests" shader tests.glsl

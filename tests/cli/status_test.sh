@@ -77,6 +77,17 @@ distrust "too many nodes" "a traversal was cut short" \
 expect 0 "the nearest first" render "$OUT/pile.obj" -o p.exr --size 8x8 --leaf 1 --shadows none $camera --quiet
 rm p.exr
 
+# Loops of a user's functions count together with each other and with the traversals that these call. A driver that
+# allows them all draws the picture.
+for i in 1 2 3; do
+    echo "//@ aov a$i"
+    echo "vec4 a$i(Surface s) { float n = 0.0; for (int i = 0; i < 25000; i++) n += fract(s.p.x); return vec4(n); }"
+done >"$OUT/loops.glsl"
+sed -i '1s/^/\/\/@ fuel 30000\n/' "$OUT/loops.glsl"
+distrust "loops of a shader" "loops of the shader, .* all loops of a kernel together .*loops.glsl has functions" \
+    "$SCENES/cube.json" --size 8x8 --shader "$OUT/loops.glsl"
+rm p.exr
+
 # `whit trace` fails in the same way for a ray from z = 65536 along -z. The float mirror on the CPU has no such limit.
 ZERO='\000\000\000\000'
 printf "$ZERO$ZERO\000\000\200\107$ZERO$ZERO$ZERO\000\000\200\277\000\000\200\177" >"$OUT/ray"
