@@ -133,7 +133,8 @@ float random(uint k)
     uvec2 at = pixel();
     uvec3 way = floatBitsToUint(hook_ray.dir);
     uint seed = hash(at.x ^ hash(at.y ^ hash(chunk.sample_index)));
-    seed = hash(seed ^ hash(way.x ^ hash(way.y ^ hash(way.z))));
+    // The steps tell apart rays that go straight on.
+    seed = hash(seed ^ hook_ray.steps ^ hash(way.x ^ hash(way.y ^ hash(way.z))));
     return float(hash(seed + k) >> 8) * (1.0 / 16777216.0);
 }
 

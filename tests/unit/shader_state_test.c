@@ -63,6 +63,23 @@ TEST_IN(random_numbers_of_post_differ_and_repeat, begin, hooks_end)
     assert_true(fabs(sum - 0.5) < 0.05 && same < 4);
 }
 
+/* Red at the first surface, green behind it. */
+TEST_IN(random_numbers_of_rays_that_go_straight_on_differ, begin, hooks_end)
+{
+    draw("vec3 shade(Surface s, Optics o, vec3 to_eye) { float x = random(0u);\n"
+         " return vec3(bounces() == 0u ? x : 0.0, bounces() == 1u ? x : 0.0, 0.0); }\n"
+         "vec3 miss(vec3 dir) { return vec3(0.0); }\n"
+         "void scatter(Surface s, Optics o, inout Rays rays) { rays.straight = vec3(1.0); }\n",
+         pixels);
+    uint32_t pairs = 0;
+    for (uint32_t i = 0; i < PIXELS; ++i) {
+        bool both = pixels[i][0] > 0.0f && pixels[i][1] > 0.0f;
+        pairs += both;
+        assert_true(!both || pixels[i][0] != pixels[i][1]);
+    }
+    assert_true(pairs > 100);
+}
+
 TEST_IN(variables_are_set_before_there_is_a_pixel, begin, hooks_end)
 {
     draw("uvec2 at = pixel();\nfloat k = random(1u), t = ray_distance(); vec3 d = ray_dir();\n"
