@@ -16,6 +16,7 @@
 #include "shader/portable.h"
 #include "shader/reach.h"
 #include "shader/refuse.h"
+#include "shader/repairs.h"
 #include "shader/returns.h"
 
 struct compilation {
@@ -163,7 +164,7 @@ static void take_instruction(struct compilation *c, struct spv_module *m, const 
         if (why && !taken)
             report(c, m->place, why);
     }
-    if (!taken)
+    if (!taken && !repairs_take(m, words))
         spv_put(m, &m->body, words, spv_length(words));
 }
 

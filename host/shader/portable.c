@@ -91,7 +91,6 @@ static const struct stand_in instructions[] = {
     {32, NOWHERE, "inversesqrt", NULL},
     {33, NOWHERE, NULL, "determinant"},
     {34, NOWHERE, NULL, "inverse"},
-    {35, NOWHERE, NULL, "modf"},
     {36, NOWHERE, NULL, "modf"},
     {37, NOWHERE, "min", NULL},
     {40, NOWHERE, "max", NULL},

@@ -167,10 +167,14 @@ void linked(uint seed) {
     vec4 v = vec4(1.0, 2.0, 3.0, 4.0);
     v.yw = v.xz;
     check(v.wzyx == vec4(3.0, 3.0, 1.0, 1.0));
+    vec2 whole = v.xy;
+    float one, part = modf(-2.75, one);
+    check(modf(vec2(2.5, -1.25), whole) == vec2(0.5, -0.25) && whole == vec2(2.0, -1.0) && part == -0.75 && one == -2.0);
+    check(unpackHalf2x16(0x40003c00u) == vec2(1.0, 2.0) && unpackHalf2x16(0xc0003c00u + seed) != vec2(1.0, 2.0));
 }
 END
     expect 0 "what is linked" shader linked.glsl
-    check "all of it" grep -q "test linked: passed, 5 checks of 4096 seeds" "$OUT/stdout"
+    check "all of it" grep -q "test linked: passed, 7 checks of 4096 seeds" "$OUT/stdout"
     expect 1 "a slider in tests" shader tests.glsl --set bands=4
     said "the failed check" "tests.glsl:8: check(bands <= 3.0) fails for 4096 of 4096 seeds of fine, the smallest is 0"
     cat >wrong.glsl <<'END'

@@ -53,7 +53,6 @@ TEST_IN(what_has_no_portable_form_is_named, compiler_begin, compiler_end)
                                         "atanh(x)",
                                         "determinant(mat2(x))",
                                         "inverse(mat2(x))[0].x",
-                                        "modf(x, w)",
                                         "frexp(x, e)",
                                         "ldexp(x, n)",
                                         "float(packSnorm4x8(vec4(x)))",
