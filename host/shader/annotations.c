@@ -470,16 +470,15 @@ whit_result shader_annotations_read(const whit_log *log, whit_shader *shader,
     errors = errors ? errors : &own;
     uint32_t before = errors->count + errors->more;
     for (uint32_t f = 0; f < shader->text.file_count; ++f) {
-        const char *at = shader->text.files[f].text;
-        for (uint32_t number = 1; at; ++number) {
-            const char *end = strchr(at, '\n');
-            const char *first = at + strspn(at, " \t");
-            if (strncmp(first, "//@", 3) == 0) {
-                struct line line = {
-                    log, shader, errors, first + 3, end ? end : first + strlen(first), f, number};
-                read_line(&line);
-            }
-            at = end ? end + 1 : NULL;
+        struct scan scan;
+        scan_begin(&scan, shader->text.files[f].text, shader->text.files[f].bytes);
+        scan.annotations = true;
+        while (scan_next(&scan)) {
+            if (scan.kind != SCAN_ANNOTATION)
+                continue;
+            const char *at = scan.annotation, *end = at + strcspn(at, "\n");
+            struct line line = {log, shader, errors, at, end, f, scan.token_line};
+            read_line(&line);
         }
     }
     return errors->count + errors->more == before ? WHIT_OK : WHIT_ERROR_INPUT;

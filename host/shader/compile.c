@@ -293,7 +293,7 @@ static uint32_t count_lines(const struct shader_file *file)
 {
     uint32_t count = 1;
     for (size_t i = 0; i + 1 < file->bytes; ++i)
-        count += file->text[i] == '\n' || (file->text[i] == '\r' && file->text[i + 1] != '\n');
+        count += file->text[i] == '\n';
     return count;
 }
 

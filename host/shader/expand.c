@@ -91,8 +91,6 @@ static void put_user_file(struct expansion *e, uint32_t index)
     const char *at = file->text, *end = at + file->bytes;
     uint32_t line = 1, include = 0;
     size_t length;
-    if (file->bytes >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0)
-        at += 3;
     put_line(e, 1, EXPAND_USER_TAG, index);
     for (const char *next; at < end && goes_on(e); at = next, ++line) {
         next = next_line(at, end, &length);

@@ -60,13 +60,10 @@ static bool bad(struct scan *scan, const char *reason)
 void scan_begin(struct scan *scan, const char *text, size_t bytes)
 {
     memset(scan, 0, sizeof *scan);
-    scan->at = text;
+    scan->begin = scan->at = text;
     scan->end = text + bytes;
     scan->line = 1;
     scan->at_line_start = true;
-    static const char mark[] = "\xef\xbb\xbf"; /* byte order mark of UTF-8 */
-    if (bytes >= 3 && memcmp(text, mark, 3) == 0)
-        scan->at += 3;
 }
 
 /* Skips a comment; `scan` is behind its first slash. */
@@ -84,6 +81,17 @@ static bool skip_comment(struct scan *scan)
     return line || bad(scan, "a comment that does not end");
 }
 
+/* Whether a line begins here, but for blanks, and is an annotation. */
+static bool is_annotation(const struct scan *scan)
+{
+    const char *first = scan->at;
+    while (first > scan->begin && is_blank(first[-1]))
+        --first;
+    return scan->annotations && scan->at_line_start && !scan->in_directive &&
+           (first == scan->begin || is_newline(first[-1])) && scan->end - scan->at >= 3 &&
+           memcmp(scan->at, "//@", 3) == 0;
+}
+
 /* Skips blanks, comments and, outside of directives, ends of lines. */
 static bool skip_blanks(struct scan *scan)
 {
@@ -94,6 +102,8 @@ static bool skip_blanks(struct scan *scan)
             step(scan);
         } else if (is_blank(c)) {
             step(scan);
+        } else if (is_annotation(scan)) {
+            return true;
         } else if (c == '/') {
             struct scan before = *scan;
             step(scan);
@@ -158,7 +168,7 @@ bool scan_next(struct scan *scan)
 {
     if (scan->kind == SCAN_BAD || !skip_blanks(scan))
         return false;
-    bool first = scan->at_line_start;
+    bool first = scan->at_line_start, annotation = is_annotation(scan);
     char c = look(scan);
     scan->token_line = scan->line;
     scan->at_line_start = false;
@@ -171,6 +181,12 @@ bool scan_next(struct scan *scan)
     if (scan->at >= scan->end) {
         scan->kind = SCAN_END;
         return false;
+    }
+    if (annotation) {
+        scan->kind = SCAN_ANNOTATION;
+        scan->annotation = scan->at + 3;
+        step(scan);
+        return skip_comment(scan);
     }
     if (first && c == '#')
         return take_directive(scan);

@@ -9,25 +9,28 @@
 
 enum scan_kind {
     SCAN_END,
-    SCAN_WORD,      /* a name, a keyword or a number */
-    SCAN_SIGN,      /* one character, in text[0] */
-    SCAN_DIRECTIVE, /* text is its name, or ""; tokens of its line follow */
-    SCAN_NEWLINE,   /* the end of a directive's line; others give no token */
-    SCAN_STRING,    /* text is what is between the quotes */
-    SCAN_BAD,       /* damaged text, see `reason`; the last token */
+    SCAN_WORD,       /* a name, a keyword or a number */
+    SCAN_SIGN,       /* one character, in text[0] */
+    SCAN_DIRECTIVE,  /* text is its name, or ""; tokens of its line follow */
+    SCAN_NEWLINE,    /* the end of a directive's line; others give no token */
+    SCAN_STRING,     /* text is what is between the quotes */
+    SCAN_ANNOTATION, /* a line `//@ ...`, if the scan has `annotations`: see `annotation` */
+    SCAN_BAD,        /* damaged text, see `reason`; the last token */
 };
 
 enum { SCAN_TEXT_BYTES = 1024 };
 
 /* The state of a scan, set up by scan_begin. */
 struct scan {
-    const char *at, *end;
+    const char *begin, *at, *end;
     uint32_t line; /* line number of `at`, from 1 */
     bool at_line_start, in_directive;
+    bool annotations; /* set it behind scan_begin: annotations are tokens, no comments */
     /* The current token. */
     enum scan_kind kind;
     uint32_t token_line;
     char text[SCAN_TEXT_BYTES]; /* a longer token is cut */
+    const char *annotation;     /* behind its //@ */
     const char *reason;
 };
 

@@ -33,26 +33,16 @@ static void complain(struct reading *r, uint32_t line, const char *reason)
 
 /* ---- Marks ---- */
 
-/* Whether a line is `//@ test`. */
-static bool is_mark(const char *line)
+/* Whether the current token is `//@ test`. */
+static bool is_mark(const struct scan *scan)
 {
-    line += strspn(line, " \t");
-    if (strncmp(line, "//@", 3) != 0)
+    if (scan->kind != SCAN_ANNOTATION)
         return false;
-    line += 3 + strspn(line + 3, " \t");
-    return strncmp(line, "test", 4) == 0 && line[4 + strspn(line + 4, " \t\r")] == '\n';
-}
-
-/* Finds the next mark from `at` on; *line is the line number of `at`, and then of the mark. NULL:
-   there is none. */
-static const char *next_mark(const char *at, uint32_t *line)
-{
-    while (at && !is_mark(at)) {
-        at = strchr(at, '\n');
-        at = at ? at + 1 : NULL;
-        ++*line;
-    }
-    return at;
+    const char *word = scan->annotation + strspn(scan->annotation, " \t");
+    if (strncmp(word, "test", 4) != 0)
+        return false;
+    word += 4 + strspn(word + 4, " \t\r");
+    return !*word || *word == '\n';
 }
 
 /* ---- Functions ---- */
@@ -118,13 +108,14 @@ static void read_body(struct reading *r, struct shader_test *test)
     test->end = (size_t)(r->scan.at - file_of(r)->text);
 }
 
-/* Reads the test whose mark is at `mark`, in line `line`. */
-static void read_test(struct reading *r, const char *mark, uint32_t line)
+/* Reads the test whose mark is the current token of `marks`. */
+static void read_test(struct reading *r, const struct scan *marks)
 {
+    uint32_t line = marks->token_line;
     struct shader_tests *tests = r->tests;
     struct shader_test test = {.file = r->file, .first_check = tests->check_count};
-    scan_begin(&r->scan, mark, file_of(r)->bytes - (size_t)(mark - file_of(r)->text));
-    r->scan.line = line;
+    r->scan = *marks;
+    r->scan.annotations = false;
     const struct shader_test *last =
         tests->test_count ? &tests->tests[tests->test_count - 1] : NULL;
     bool has_form = read_head(r, &test);
@@ -174,13 +165,12 @@ whit_result shader_tests_read(const whit_log *log, const struct shader_text *tex
     *tests = (struct shader_tests){0};
     struct reading r = {.log = log, .text = text, .tests = tests, .errors = errors};
     for (r.file = 0; r.file < text->file_count && goes_on(&r); ++r.file) {
-        uint32_t line = 1;
-        const char *at = text->files[r.file].text;
-        while (goes_on(&r) && (at = next_mark(at, &line))) {
-            read_test(&r, at, line);
-            at = strchr(at, '\n');
-            at = at ? at + 1 : NULL;
-            line++;
+        struct scan marks;
+        scan_begin(&marks, text->files[r.file].text, text->files[r.file].bytes);
+        marks.annotations = true;
+        while (goes_on(&r) && scan_next(&marks)) {
+            if (is_mark(&marks))
+                read_test(&r, &marks);
         }
     }
     /* A file without tests may have a function check() of its own. */

@@ -106,6 +106,18 @@ static whit_result copy_source(struct reading *r, const struct place *place,
     return WHIT_OK;
 }
 
+/* Blanks the byte order mark of UTF-8, and makes each CR without LF the end of a line, so that all
+   readers of the text agree about its lines. */
+static void even_out(struct shader_file *file)
+{
+    if (strncmp(file->text, "\xef\xbb\xbf", 3) == 0)
+        memset(file->text, ' ', 3);
+    for (size_t i = 0; i < file->bytes; ++i) {
+        if (file->text[i] == '\r' && file->text[i + 1] != '\n')
+            file->text[i] = '\n';
+    }
+}
+
 /* Refuses bytes that are no text, and very long lines. */
 static whit_result check_bytes(struct reading *r, const struct shader_file *file)
 {
@@ -432,6 +444,7 @@ static whit_result read_one(struct reading *r, const struct place *place, char *
     text->files[*index].text[text->files[*index].bytes] = 0;
     r->below[*index] = 1;
     r->open[r->open_count++] = *index;
+    even_out(&text->files[*index]);
     result = check_bytes(r, &text->files[*index]);
     if (result == WHIT_OK)
         blank_if_zero(&text->files[*index]);

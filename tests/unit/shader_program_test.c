@@ -15,8 +15,10 @@ static whit_result read_text(const char *text, whit_shader *shader)
     return result == WHIT_OK ? shader_annotations_read(NULL, shader, &errors) : result;
 }
 
-static const char whole[] = "//@ whit 1\n"
-                            "//@ slider bands 1 8 3 \"steps of light\"\n"
+/* A byte order mark, an end of a line that is a CR alone, and lines in comments. */
+static const char whole[] = "\xef\xbb\xbf//@ slider bands 1 8 3 \"steps of light\"\r"
+                            "//@ whit 1\n"
+                            "/*\n//@ none\n*/ //@ none\n// \\\n//@ none\n"
                             "  //@ color rim #ff8000\n"
                             "//@ toggle on on\n"
                             "//@ toggle off \"begins without\"\n"
@@ -274,7 +276,8 @@ static const char tested[] = "float f(float x) { return x; } // check(\n"
                              "}\n"
                              "  //@  test \n"
                              "void two(uint n)\n"
-                             "{ check((n)==n); } float g() { return 1.0; }\n";
+                             "{ check((n)==n); } float g() { return 1.0; }\n"
+                             "/*\n//@ test\n*/\n";
 
 TEST(tests_and_their_checks_are_found)
 {
