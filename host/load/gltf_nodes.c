@@ -305,8 +305,7 @@ static bool read_spot(const struct gltf *gltf, const json_t *object, const struc
         outer = fmin(fmax(outer, 0), 2 * quarter);
         inner = fmin(fmax(inner, 0), outer);
     }
-    out->cos_inner = (float)same_cos(inner);
-    out->cos_outer = (float)same_cos(outer);
+    scene_light_cones(out, inner, outer);
     return true;
 }
 

@@ -113,8 +113,7 @@ static bool read_light_values(struct reader *reader, const struct place *place,
         return false;
     if (inner > outer)
         return reader_fail(reader, &here, "the inner angle is over the outer one");
-    out->cos_inner = (float)same_cos(inner * RADIANS);
-    out->cos_outer = (float)same_cos(outer * RADIANS);
+    scene_light_cones(out, inner * RADIANS, outer * RADIANS);
     for (int i = 0; i < 3; ++i)
         out->color[i] = (float)((double)out->color[i] * intensity);
     return true;

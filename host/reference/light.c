@@ -35,10 +35,14 @@ double light_area_share(const struct reference *reference, const struct scene_li
     return area / (PI * reference->light_samples);
 }
 
-static double spot_share(const struct scene_light *light, double cos_away)
+/* `to_light`, `direction`: unit. */
+static double spot_share(const struct scene_light *light, struct dvec3 to_light,
+                         struct dvec3 direction)
 {
-    double outer = (double)light->cos_outer, inner = (double)light->cos_inner;
-    double soft = clamp_unit((cos_away - outer) / fmax(inner - outer, 1e-6));
+    struct dvec3 off = d3_add(to_light, direction);
+    double versine = 0.5 * dvec3_dot(off, off);
+    double soft =
+        clamp_unit(((double)light->versine_outer - versine) / scene_light_cone_width(light));
     return soft * soft;
 }
 
@@ -89,7 +93,7 @@ bool light_at(const struct tracer *tracer, const struct scene_light *light, uint
     if (light->falloff || flat || light->kind == WHIT_LIGHT_AREA_SAMPLE)
         share /= square;
     if (light->kind == WHIT_LIGHT_SPOT)
-        share *= spot_share(light, cos_away);
+        share *= spot_share(light, sample->to_light, direction);
     if (light->kind == WHIT_LIGHT_AREA_SAMPLE)
         share *= cos_emitter;
     if (flat) {

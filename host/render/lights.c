@@ -44,8 +44,8 @@ static struct gpu_light make_light(const struct scene_light *light, uint32_t sam
         .kind = light_code(light->kind),
         .range = light->range > 0.0f ? light->range : INFINITY,
         .falloff = light->falloff || light->kind == WHIT_LIGHT_AREA_SAMPLE,
-        .cos_inner = light->cos_inner,
-        .cos_outer = light->cos_outer,
+        .spot_edge = light->versine_outer,
+        .spot_slope = (float)(1.0 / scene_light_cone_width(light)),
         .two_sided = light->two_sided,
     };
     for (int i = 0; i < 3; ++i) {

@@ -340,8 +340,8 @@ static uint32_t mend_light(struct scene_light *light)
     }
     if (!(light->range > 0.0f) || !isfinite(light->range))
         light->range = 0.0f;
-    mend(&light->cos_outer, -1.0f, 1.0f, 0.70710678f);
-    mend(&light->cos_inner, light->cos_outer, 1.0f, 1.0f);
+    mend(&light->versine_outer, 0.0f, 2.0f, 0.29289322f);
+    mend(&light->versine_inner, 0.0f, light->versine_outer, 0.0f);
     return count;
 }
 

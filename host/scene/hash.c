@@ -85,10 +85,13 @@ static void hash_channel(struct hash *hash, const struct scene_channel *c)
     HASH_ARRAY(hash, c->values, (size_t)c->key_count * scene_channel_width(c));
 }
 
+/* Lights without cones are hashed by cosines, as goldens hold them. */
 static void hash_light(struct hash *hash, const struct scene_light *l)
 {
     const uint32_t words[] = {(uint32_t)l->kind, l->node, l->falloff, l->two_sided};
-    const float values[] = {l->range, l->cos_inner, l->cos_outer};
+    bool spot = l->kind == WHIT_LIGHT_SPOT;
+    const float values[] = {l->range, spot ? l->versine_inner : 1.0f - l->versine_inner,
+                            spot ? l->versine_outer : 1.0f - l->versine_outer};
     HASH_FIELD(hash, words);
     HASH_FIELD(hash, values);
     HASH_FIELD(hash, l->position);

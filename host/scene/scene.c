@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,7 @@
 
 #include "base/array.h"
 #include "base/child.h"
+#include "base/same.h"
 
 struct scene *scene_create(const whit_log *log, const char *name)
 {
@@ -192,6 +194,24 @@ void scene_material_init(struct scene_material *out, const char *name)
     };
     for (int i = 0; i < SCENE_SLOT_COUNT; ++i)
         scene_texture_use_init(&out->textures[i]);
+}
+
+static float versine(double angle)
+{
+    double sine = same_sin(0.5 * angle);
+    return (float)(2.0 * sine * sine);
+}
+
+void scene_light_cones(struct scene_light *light, double inner, double outer)
+{
+    light->versine_inner = versine(inner);
+    light->versine_outer = versine(outer);
+}
+
+double scene_light_cone_width(const struct scene_light *light)
+{
+    double outer = (double)light->versine_outer, width = outer - (double)light->versine_inner;
+    return fmax(width, fmax(outer * 1e-6, 1e-30));
 }
 
 void scene_node_init(struct scene_node *out, const char *name, uint32_t parent)

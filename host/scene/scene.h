@@ -191,7 +191,9 @@ struct scene_light {
     float stated[3];     /* `color` before scene_freeze scaled it; set by scene_freeze */
     bool falloff;        /* 1 / distance^2 */
     float range;         /* 0: without limit */
-    float cos_inner, cos_outer; /* SPOT: full light inside the inner cone, none outside the outer */
+    /* SPOT: full light inside the inner cone, none outside the outer; 1 - cosine of the angles to
+       the middle, as cosines of narrow cones are all alike in floats. */
+    float versine_inner, versine_outer;
     /* RECTANGLE, TRIANGLE: edges from the corner `position`, in the space of `node`. Light goes out
        on the side of edge_u x edge_v. */
     double edge_u[3], edge_v[3];
@@ -325,6 +327,12 @@ char *scene_text(struct scene *scene, const char *text);
 /* Adds a note, which is kept for the receipt and logged at once. */
 void scene_note(struct scene *scene, enum scene_note_level level, const char *format, ...)
     WHIT_PRINTF(3, 4);
+
+/* Sets the cones of a spot light by their angles to its middle, in radians. */
+void scene_light_cones(struct scene_light *light, double inner, double outer);
+/* How much the versine grows between the cones of a spot light; above 0, also where they are
+   equal. */
+double scene_light_cone_width(const struct scene_light *light);
 
 void scene_mesh_finish(struct scene_mesh *mesh);
 /* Makes *out a deep copy; false, with *out empty, where memory ran out. */

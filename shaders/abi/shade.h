@@ -116,8 +116,8 @@ struct gpu_light {
     gpu_float range;    /* infinity: no limit */
     gpu_vec3 color;
     gpu_uint falloff; /* 1: 1 / distance^2 */
-    gpu_float cos_inner;
-    gpu_float cos_outer;
+    gpu_float spot_edge;  /* 1 - cosine of a spot's outer cone */
+    gpu_float spot_slope; /* 1 / (that - the same of its inner cone) */
     gpu_uint two_sided; /* of emitters */
     gpu_float end; /* where shadow rays end: see accel_light_end */
     gpu_vec3 edge_u;
@@ -126,7 +126,7 @@ struct gpu_light {
     gpu_uint pad1;
 };
 GPU_ASSERT_SIZE(gpu_light, 96)
-GPU_ASSERT_AT(gpu_light, cos_inner, 48)
+GPU_ASSERT_AT(gpu_light, spot_edge, 48)
 GPU_ASSERT_AT(gpu_light, edge_u, 64)
 
 /* Data that all pixels of a picture share. A camera ray starts at `eye` (orthographic: moved in the

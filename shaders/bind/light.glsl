@@ -150,8 +150,9 @@ bool light_at(gpu_light light, uint index, vec3 p, out LightSample from)
     float cos_away = -dot(from.to_light, light.direction);
     float cos_emitter = light.two_sided != 0u ? abs(cos_away) : max(cos_away, 0.0);
     if ((SPEC_LIGHTS & (1u << LIGHT_SPOT)) != 0u && light.kind == LIGHT_SPOT) {
-        float part = (cos_away - light.cos_outer) / max(light.cos_inner - light.cos_outer, 1e-6);
-        float soft = clamp(part, 0.0, 1.0);
+        // 1 - cosine, by the difference of two unit vectors: exact also near the middle.
+        vec3 off = from.to_light + light.direction;
+        float soft = clamp((light.spot_edge - 0.5 * dot(off, off)) * light.spot_slope, 0.0, 1.0);
         from.arriving *= soft * soft;
     }
     if ((SPEC_LIGHTS & (1u << LIGHT_AREA_SAMPLE)) != 0u && light.kind == LIGHT_AREA_SAMPLE)

@@ -209,8 +209,8 @@ TEST_IN(lights_keep_their_numbers, fixture_begin, fixture_end)
     assert_float_equal(light->color[1], 20.0f / 3.14159274f, 1e-5);
     assert_float_equal(light->range, 7, 0);
     assert_true(light->falloff);
-    assert_float_equal(light->cos_inner, cosf(0.25f), 1e-6);
-    assert_float_equal(light->cos_outer, cosf(0.5f), 1e-6);
+    assert_float_equal(light->versine_inner, 1.0f - cosf(0.25f), 1e-6);
+    assert_float_equal(light->versine_outer, 1.0f - cosf(0.5f), 1e-6);
     assert_float_equal(light->direction[2], -1, 0);
     assert_int_equal(light->node, 1);
 }
@@ -228,16 +228,16 @@ static const struct scene_light *load_spot(const char *angles)
 TEST_IN(equal_cone_angles_are_a_hard_edge, fixture_begin, fixture_end)
 {
     const struct scene_light *light = load_spot("\"innerConeAngle\":0.4,\"outerConeAngle\":0.4");
-    assert_float_equal(light->cos_inner, cosf(0.4f), 1e-6);
-    assert_float_equal(light->cos_outer, light->cos_inner, 0);
+    assert_float_equal(light->versine_inner, 1.0f - cosf(0.4f), 1e-6);
+    assert_float_equal(light->versine_outer, light->versine_inner, 0);
     assert_false(fixture_noted("cone angles"));
 }
 
 TEST_IN(wrong_cone_angles_are_cut, fixture_begin, fixture_end)
 {
     const struct scene_light *light = load_spot("\"innerConeAngle\":1.8,\"outerConeAngle\":2");
-    assert_float_equal(light->cos_inner, 0, 1e-6);
-    assert_float_equal(light->cos_outer, 0, 1e-6);
+    assert_float_equal(light->versine_inner, 1, 1e-6);
+    assert_float_equal(light->versine_outer, 1, 1e-6);
     assert_true(fixture_noted("lights[0]: its cone angles 1.8 and 2 are cut to"));
 }
 

@@ -425,7 +425,7 @@ static void lights_cameras_and_sky(void)
     assert_int_equal(scene->cameras[1].kind, WHIT_CAMERA_ORTHOGRAPHIC);
     const struct scene_light *spot = &scene->lights[0], *sun = &scene->lights[1];
     assert_true(spot->direction[1] == -1.0 && spot->falloff && spot->color[1] == 4.0f);
-    assert_true(fabsf(spot->cos_outer - 0.5f) < 1e-6f && spot->cos_inner > 0.86f);
+    assert_true(fabsf(spot->versine_outer - 0.5f) < 1e-6f && spot->versine_inner < 0.14f);
     assert_true(fabs(sun->direction[2] - 0.8) < 1e-12 && !sun->falloff);
 }
 

@@ -123,8 +123,8 @@ static void add_lights(struct scene *scene)
                                           .color = {20, 18, 15},
                                           .falloff = true,
                                           .range = 30,
-                                          .cos_inner = 0.97f,
-                                          .cos_outer = 0.8f},
+                                          .versine_inner = 0.03f,
+                                          .versine_outer = 0.2f},
                                          {.kind = WHIT_LIGHT_RECTANGLE,
                                           .node = SCENE_NONE,
                                           .position = {-3, 3, -2},
@@ -265,8 +265,24 @@ static struct scene *far_lamp(void)
     return scene;
 }
 
+/* A spot light 1e4 above the floor, whose cones end 0.4 and 0.5 from its middle. */
+static struct scene *narrow_spot(void)
+{
+    struct scene *scene = dark_scene((double[]){0, 2, 2}, (double[]){0, 0, 0});
+    struct scene_light light = {.kind = WHIT_LIGHT_SPOT,
+                                .node = SCENE_NONE,
+                                .position = {0, 1e4, 0},
+                                .direction = {0, -1, 0}};
+    set_rgb(light.color, 1, 1, 1);
+    scene_light_cones(&light, 0.4e-4, 0.5e-4);
+    add_object(scene, mesh_plane(8), matte(1, 1, 1), 0, 0, 0);
+    scene_put_light(scene, light);
+    return scene;
+}
+
 TEST(scarce_digits_agree)
 {
+    assert_agrees("narrow spot", narrow_spot());
     assert_agrees("far lamp", far_lamp());
 }
 

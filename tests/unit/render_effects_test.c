@@ -74,8 +74,8 @@ static void add_spot(struct scene *scene)
                                                 .position = {-3, 4, 2},
                                                 .direction = {0.6, -0.8, 0},
                                                 .color = {0.5f, 0.4f, 0.3f},
-                                                .cos_inner = 0.95f,
-                                                .cos_outer = 0.7f});
+                                                .versine_inner = 0.05f,
+                                                .versine_outer = 0.3f});
 }
 
 static void add_lights(struct scene *scene)

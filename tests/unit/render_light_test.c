@@ -163,9 +163,8 @@ TEST_BY_TURNS(spots_fall_off_between_their_cones, 3, 4)
                                 .node = SCENE_NONE,
                                 .position = {0, height, 0},
                                 .direction = {0, -1, 0},
-                                .falloff = true,
-                                .cos_inner = (float)cos(inner),
-                                .cos_outer = (float)cos(outer)};
+                                .falloff = true};
+    scene_light_cones(&light, inner, outer);
     set_rgb(light.color, 5, 5, 5);
     scene_put_light(scene, light);
     whit_renderer_params params = {.width = 33, .height = 33};

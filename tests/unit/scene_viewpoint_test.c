@@ -369,8 +369,8 @@ static struct scene *lamp_over_floor(float level, float albedo, bool is_model, w
                                 .position = {0, 2, 0},
                                 .direction = {0, -1, 0},
                                 .color = {level, level, level},
-                                .cos_inner = 0.6f,
-                                .cos_outer = 0.5f,
+                                .versine_inner = 0.4f,
+                                .versine_outer = 0.5f,
                                 .falloff = true};
     light.origin.file = string_copy("a.glb");
     set_rgb(floor.diffuse, albedo, albedo, albedo);
@@ -513,15 +513,15 @@ TEST(surfaces_brighter_by_light_than_by_emission_get_help)
 static struct scene *wall_with_spot(double radius)
 {
     struct scene *scene = empty_scene();
-    float edge = (float)cos(atan(radius / 5.0));
+    float edge = (float)(1.0 - cos(atan(radius / 5.0)));
     scene_put(scene, mesh_box(100, 100, 0.1), NULL);
     scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_SPOT,
                                                 .node = SCENE_NONE,
                                                 .position = {0, 0, 5.05},
                                                 .direction = {0, 0, -1},
                                                 .color = {1, 1, 1},
-                                                .cos_inner = edge,
-                                                .cos_outer = edge});
+                                                .versine_inner = edge,
+                                                .versine_outer = edge});
     scene_put_camera(scene, (const double[]){0, 0, 10.05}, (const double[]){0, 0, 0}, 0.5);
     scene->is_model = true;
     return scene_ready(scene);
