@@ -91,7 +91,8 @@ static void place_uv(const struct surface *s, const struct scene_texture_use *us
     for (int i = 0; i < 2; ++i)
         at[i] = corners[0][i] * (1.0 - s->u - s->v) + corners[1][i] * s->u + corners[2][i] * s->v;
     for (int i = 0; i < 2; ++i)
-        uv[i] = (double)m[3 * i] * at[0] + (double)m[3 * i + 1] * at[1] + (double)m[3 * i + 2];
+        uv[i] = (double)m[3 * i] * at[0] + (double)m[3 * i + 1] * at[1] +
+                (double)scene_texture_offset(use, i);
 }
 
 static bool is_srgb(const struct scene_material *m, enum scene_slot slot)

@@ -71,7 +71,7 @@ static whit_result add_use(struct material_upload *up, const struct scene_materi
     const float *t = use->transform;
     struct gpu_texture record = {
         .matrix = {t[0], t[1], t[3], t[4]},
-        .offset = {t[2], t[5]},
+        .offset = {scene_texture_offset(use, 0), scene_texture_offset(use, 1)},
         .wrap = wrap_code(use->wrap_u) | wrap_code(use->wrap_v) << 2,
         .nearest = use->nearest,
         .uv_set = use->uv_set != 0,

@@ -175,6 +175,13 @@ bool scene_slot_is_srgb(enum scene_slot slot, whit_material_model model)
            (slot == SCENE_SLOT_SPECULAR && model == WHIT_MODEL_METAL_ROUGH);
 }
 
+float scene_texture_offset(const struct scene_texture_use *use, int axis)
+{
+    float offset = use->transform[3 * axis + 2];
+    enum scene_wrap wrap = axis ? use->wrap_v : use->wrap_u;
+    return wrap == SCENE_WRAP_CLAMP ? offset : fmodf(offset, 2.0f);
+}
+
 void scene_material_init(struct scene_material *out, const char *name)
 {
     *out = (struct scene_material){

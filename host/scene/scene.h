@@ -304,6 +304,9 @@ void scene_drop_pictures(struct scene *scene);
    without a texture; a node with the identity. `name` is copied. */
 void scene_material_init(struct scene_material *out, const char *name);
 void scene_texture_use_init(struct scene_texture_use *out);
+/* The offset of a texture along u (axis 0) or v (axis 1), without whole pairs of its periods, which
+   would cost coordinates their digits. */
+float scene_texture_offset(const struct scene_texture_use *use, int axis);
 /* Whether colours in textures of the slot are sRGB. Other slots have numbers, and alpha always is a
    number. */
 bool scene_slot_is_srgb(enum scene_slot slot, whit_material_model model);

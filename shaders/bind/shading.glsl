@@ -133,20 +133,26 @@ bool wraps(uint way, uint wrap)
     return (ways & bit) != 0u && (ways == bit || wrap == way);
 }
 
+// `at`: a texel of a place from place_in_picture or one beside it: -1 .. 2 size where the texture
+// repeats. Without a division, which devices may round to another whole number.
 int wrap_texel(int at, int size, uint wrap)
 {
     int chosen = at;
-    if (wraps(WRAP_REPEAT, wrap))
-        chosen = at - size * int(floor(float(at) / float(size)));
+    if (wraps(WRAP_REPEAT, wrap)) {
+        chosen = at < 0 ? at + size : at;
+        chosen -= chosen >= size ? size : 0;
+        chosen -= chosen >= size ? size : 0;
+    }
     if (wraps(WRAP_MIRROR, wrap)) {
-        int period = at - 2 * size * int(floor(float(at) / float(2 * size)));
+        int period = at < 0 ? at + 2 * size : at;
+        period -= period >= 2 * size ? 2 * size : 0;
         chosen = period < size ? period : 2 * size - 1 - period;
     }
     return clamp(chosen, 0, size - 1);
 }
 
-// Takes off whole periods, so that coordinates far from 0 keep their fraction and cannot overflow
-// an int.
+// Takes off whole periods, so that coordinates far from 0 cannot overflow an int. The fraction of
+// such a coordinate has only the digits that its float has left.
 float reduce_coordinate(float x, uint wrap)
 {
     float reduced = wraps(WRAP_CLAMP, wrap) ? clamp(x, -1.0, 2.0) : x - 2.0 * floor(x * 0.5);

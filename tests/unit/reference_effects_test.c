@@ -280,8 +280,22 @@ static struct scene *narrow_spot(void)
     return scene;
 }
 
+/* A floor with a texture that is moved by many periods. */
+static struct scene *far_offset(enum scene_wrap wrap)
+{
+    struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
+    struct scene_material m = unlit(1, 1, 1);
+    use_smooth(&m, SCENE_SLOT_DIFFUSE, add_noise(scene, 0, false), 3, wrap);
+    m.textures[SCENE_SLOT_DIFFUSE].transform[2] = 1e6f + 1.0f;
+    m.textures[SCENE_SLOT_DIFFUSE].transform[5] = -1e6f - 0.25f;
+    add_object(scene, mesh_plane(4), m, 0, 0, 0);
+    return scene;
+}
+
 TEST(scarce_digits_agree)
 {
+    assert_agrees("far repeated", far_offset(SCENE_WRAP_REPEAT));
+    assert_agrees("far mirrored", far_offset(SCENE_WRAP_MIRROR));
     assert_agrees("narrow spot", narrow_spot());
     assert_agrees("far lamp", far_lamp());
 }
