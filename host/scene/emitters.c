@@ -33,11 +33,23 @@ struct emitter_list {
     double power;
 };
 
+/* The share of its emission that a surface sends, by the material's opacity. Textures and vertex
+   colours, which may make it less, do not count. */
+static double sent_share(const struct scene_material *material)
+{
+    double opacity = (double)material->opacity;
+    if (material->alpha == SCENE_ALPHA_BLEND)
+        return fmin(fmax(opacity, 0.0), 1.0);
+    return material->alpha == SCENE_ALPHA_MASK && material->opacity < material->alpha_cutoff ? 0.0
+                                                                                             : 1.0;
+}
+
 /* Whether a material's surfaces become lights. Textured emission does not: signs and screens glow,
    but are no lamps of the texture's average colour. */
 static bool lights_up(const struct scene_material *material)
 {
     return material->model != WHIT_MODEL_UNLIT && color_luminance(material->emission) > 0.0 &&
+           sent_share(material) > 0.0 &&
            material->textures[SCENE_SLOT_EMISSION].texture == SCENE_NONE;
 }
 
@@ -63,7 +75,8 @@ static bool gather_instance(const struct scene *scene, const struct scene_pose *
             continue;
         double corners[3][3], normal[3];
         scene_mesh_placed_corners(mesh, t, &pose->instances[instance], corners);
-        double power = 0.5 * normal_of(corners, normal) * color_luminance(material->emission);
+        double power = 0.5 * normal_of(corners, normal) * color_luminance(material->emission) *
+                       sent_share(material);
         if (!(power > 0.0) || !isfinite(power))
             continue;
         struct emitter emitter = {instance, mesh->materials[t], t, power};
@@ -310,8 +323,9 @@ static bool add_flats(struct scene *scene, const struct flat *flats, uint32_t co
         double length = normal_of(corners, normal);
         for (int k = 0; k < 3; ++k)
             light.direction[k] = length > 0.0 ? normal[k] / length : -(double)(k == 1);
-        memcpy(light.color, scene->materials[flats[i].emitter->material].emission,
-               sizeof light.color);
+        const struct scene_material *material = &scene->materials[flats[i].emitter->material];
+        for (int k = 0; k < 3; ++k)
+            light.color[k] = (float)((double)material->emission[k] * sent_share(material));
         if (scene_add_light(scene, light) == SCENE_NONE)
             return false;
     }

@@ -251,14 +251,12 @@ TEST(own_light_gets_no_company)
 }
 
 /* 2 * steps^2 glowing triangles. */
-static struct scene *panel_scene(float radiance, uint32_t steps)
+static struct scene *panel_of(struct scene_material material, uint32_t steps)
 {
     struct scene_mesh panel;
     assert_int_equal(shape_plane(2.0, 1.0, steps, 1.0, &panel), WHIT_OK);
     struct scene *scene = scene_of(mesh_box(2, 2, 2));
     scene_put_material(scene, material_grey("plain"));
-    struct scene_material material = material_grey("panel");
-    material.emission[0] = material.emission[1] = material.emission[2] = radiance;
     struct scene_node node;
     scene_node_init(&node, "up", SCENE_NONE);
     node.translation[1] = 5.0;
@@ -266,6 +264,18 @@ static struct scene *panel_scene(float radiance, uint32_t steps)
     uint32_t up = scene_add_node(scene, node);
     scene_put(scene, panel, &(struct put){.material = &material, .node = &up});
     return scene;
+}
+
+static struct scene_material glowing(float radiance)
+{
+    struct scene_material material = material_grey("panel");
+    material.emission[0] = material.emission[1] = material.emission[2] = radiance;
+    return material;
+}
+
+static struct scene *panel_scene(float radiance, uint32_t steps)
+{
+    return panel_of(glowing(radiance), steps);
 }
 
 /* A lamp of many triangles becomes samples whose intensities add up to radiance * world area / pi,
@@ -290,6 +300,27 @@ TEST(tessellated_lamps_become_points)
     assert_true(fabs(mean_x) < 0.3);
     assert_true(scene->ambient[0] == 0.03f);
     scene_pose_finish(&pose);
+}
+
+TEST(lamps_light_by_their_opacity)
+{
+    for (uint32_t steps = 1; steps <= 6; steps += 5) {
+        struct scene_material material = glowing(10.0f);
+        material.opacity = 0.25f;
+        material.alpha = SCENE_ALPHA_BLEND;
+        own_scene *thin = panel_of(material, steps);
+        material.alpha = SCENE_ALPHA_MASK; /* below the cutoff */
+        material.name = string_copy("panel");
+        own_scene *none = panel_of(material, steps);
+        scene_ready(thin);
+        double sum = 0.0, area = steps == 1 ? 1.0 : 6.0 / 3.14159265358979;
+        for (uint32_t i = 0; i < thin->light_count; ++i)
+            sum += (double)thin->lights[i].color[0];
+        assert_true(fabs(sum - 2.5 * area) < 1e-5);
+        scene_ready(none);
+        assert_int_equal(none->light_count, 1);
+        assert_int_equal(none->lights[0].kind, WHIT_LIGHT_DIRECTIONAL);
+    }
 }
 
 TEST(flat_lamps_become_rectangles)
