@@ -147,6 +147,7 @@ enum {
 
 enum { CAPABILITY_INT64 = 11 };
 enum {
+    STORAGE_INPUT = 1,
     STORAGE_UNIFORM = 2,
     STORAGE_WORKGROUP = 4,
     STORAGE_PRIVATE = 6,

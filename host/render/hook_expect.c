@@ -113,9 +113,21 @@ static bool expects(const whit_shader *shader, whit_expected what)
     return false;
 }
 
+/* A picture that was refined has no identities: those are of the first sample. */
+static void say_unknown_ids(const struct pair *pair, const whit_shader *shader)
+{
+    for (uint32_t i = 0; pair->own->params.sampling.first && i < shader->expectation_count; ++i) {
+        const whit_shader_expectation *expected = &shader->expectations[i];
+        if (expected->what == WHIT_EXPECT_IDS)
+            log_error(&pair->own->log, "%s:%u: `ids == base` cannot be checked in this picture",
+                      expected->file, expected->line);
+    }
+}
+
 static whit_result read_pair(struct pair *pair, const whit_shader *shader)
 {
     whit_result result = WHIT_OK;
+    say_unknown_ids(pair, shader);
     for (int i = 0; i < 2; ++i) {
         struct renderer *renderer = i == 0 ? pair->own : pair->base;
         if (result == WHIT_OK && expects(shader, WHIT_EXPECT_IDS))

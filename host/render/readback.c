@@ -117,6 +117,8 @@ whit_result readback_non_finite(const struct target *target, uint32_t *x, uint32
     const struct pixel_buffers *p = &target->buffers;
     float pixels[READ_SLICE][4];
     uint64_t held = (uint64_t)renderer->params.width * p->band_rows;
+    uint32_t stride = views_stride(renderer), end = views_rows(renderer);
+    end += renderer->views.count ? 0 : renderer->params.first_row;
     *x = *y = *count = 0;
     for (uint64_t at = 0; at < held; at += READ_SLICE) {
         uint64_t n = held - at < READ_SLICE ? held - at : READ_SLICE;
@@ -125,11 +127,14 @@ whit_result readback_non_finite(const struct target *target, uint32_t *x, uint32
         if (result != WHIT_OK)
             return result;
         for (uint64_t i = 0; i < n; ++i) {
-            if (isfinite(pixels[i][0]) && isfinite(pixels[i][1]) && isfinite(pixels[i][2]))
+            uint32_t row = (uint32_t)((at + i) / renderer->params.width) + p->band_y;
+            bool below = row >= end || row % stride >= renderer->params.height;
+            if (below ||
+                (isfinite(pixels[i][0]) && isfinite(pixels[i][1]) && isfinite(pixels[i][2])))
                 continue;
             if ((*count)++ == 0) {
                 *x = (uint32_t)((at + i) % renderer->params.width);
-                *y = (uint32_t)((at + i) / renderer->params.width) + p->band_y;
+                *y = row;
             }
         }
     }

@@ -51,6 +51,12 @@ static bool next_word(struct line *line, char *text, size_t text_bytes)
     return true;
 }
 
+static bool ends(struct line *line)
+{
+    char rest[4];
+    return next_word(line, rest, sizeof rest) && !rest[0];
+}
+
 static bool is_name(const char *text)
 {
     bool fine = isalpha((unsigned char)text[0]) || text[0] == '_';
@@ -247,8 +253,14 @@ static bool is_new_name(const struct line *line, const char *name)
         return false;
     }
     for (uint32_t i = 0; i < shader->slider_count; ++i) {
-        if (strcmp(shader->sliders[i].name, name) == 0) {
-            complain(line, "there is a slider `%s` already, in line %u", name,
+        const whit_slider *slider = &shader->sliders[i];
+        size_t length = strlen(slider->name);
+        bool same = strcmp(slider->name, name) == 0;
+        bool longer = strncmp(slider->name, name, length) == 0 && name[length] == '_';
+        for (uint32_t k = 0; longer && k < slider->word_count; ++k)
+            same = same || strcmp(slider->words[k], name + length + 1) == 0;
+        if (same) {
+            complain(line, "there is a slider or a choice `%s` already, in line %u", name,
                      shader->slider_texts[i].line);
             return false;
         }
@@ -260,6 +272,18 @@ static bool is_new_name(const struct line *line, const char *name)
         }
     }
     return true;
+}
+
+/* Words of a choice `mode` are constants `mode_WORD`. */
+static bool are_new_words(const struct line *line, const whit_slider *slider)
+{
+    bool fine = true;
+    for (uint32_t i = 0; fine && i < slider->word_count; ++i) {
+        char name[SHADER_NAME_BYTES + SHADER_HELP_BYTES];
+        snprintf(name, sizeof name, "%s_%s", slider->name, slider->words[i]);
+        fine = is_new_name(line, name);
+    }
+    return fine;
 }
 
 /* Whether the line is followed by "vec4 NAME(Surface s)". */
@@ -282,9 +306,8 @@ static bool stands_before_function(const struct line *line, const char *name)
 static void read_aov(struct line *line)
 {
     whit_shader *shader = line->shader;
-    char name[SHADER_NAME_BYTES], rest[4];
-    if (!next_word(line, name, sizeof name) || !is_name(name) ||
-        !next_word(line, rest, sizeof rest) || rest[0]) {
+    char name[SHADER_NAME_BYTES];
+    if (!next_word(line, name, sizeof name) || !is_name(name) || !ends(line)) {
         complain(line, "an aov has a name of letters, digits and _, and nothing more");
         return;
     }
@@ -295,7 +318,8 @@ static void read_aov(struct line *line)
         return;
     }
     if (!stands_before_function(line, name)) {
-        complain(line, "`//@ aov %s` stands before `vec4 %s(Surface s)`", name, name);
+        complain(line, "`//@ aov %s` stands before `vec4 %s(Surface s)`, without const", name,
+                 name);
         return;
     }
     struct shader_aov *aov = &shader->aovs[shader->aov_count];
@@ -319,11 +343,10 @@ static void read_slider(struct line *line, size_t kind)
                  texts->name);
         return;
     }
-    if (!is_new_name(line, texts->name) || !read_slider_value(line, slider, texts))
+    if (!is_new_name(line, texts->name) || !read_slider_value(line, slider, texts) ||
+        !are_new_words(line, slider))
         return;
-    char rest[4];
-    if (!next_word(line, texts->help, sizeof texts->help) || !next_word(line, rest, sizeof rest) ||
-        rest[0]) {
+    if (!next_word(line, texts->help, sizeof texts->help) || !ends(line)) {
         complain(line,
                  "behind the value of `%s` stands its help in quotes, up to %d bytes, and "
                  "nothing more",
@@ -341,19 +364,16 @@ static void read_slider(struct line *line, size_t kind)
 static void read_box(struct line *line)
 {
     struct shader_box box = {.file = line->file, .line = line->number}, *own = &line->shader->box;
-    double number;
-    char rest[4];
+    double number, sides[6];
     for (int i = 0; i < 6; ++i) {
-        double least = i < 3 ? -1e18 : (double)box.lo[i - 3];
-        if (!read_number(line, "a side of the box", least, 1e18, &number))
+        if (!read_number(line, "a side of the box", i < 3 ? -1e18 : sides[i - 3], 1e18, &sides[i]))
             return;
-        *(i < 3 ? &box.lo[i] : &box.hi[i - 3]) = (float)number;
+        *(i < 3 ? &box.lo[i] : &box.hi[i - 3]) = (float)sides[i];
     }
     if (!read_number(line, "how far answers may be from the shape", 1e-18, 1e18, &number))
         return;
     box.error = (float)number;
-    if (!next_word(line, box.material, sizeof box.material) ||
-        !next_word(line, rest, sizeof rest) || rest[0])
+    if (!next_word(line, box.material, sizeof box.material) || !ends(line))
         complain(line, "behind the box stands the name of a material, and nothing more");
     else if (own->line)
         complain(line, "there is a box already, in line %u", own->line);
@@ -366,10 +386,16 @@ static void read_fuel(struct line *line)
     double fuel;
     if (!read_number(line, "fuel", 1.0, SHADER_FUEL_MAX, &fuel))
         return;
-    if (floor(fuel) != fuel)
+    if (floor(fuel) != fuel) {
         complain(line, "fuel is a whole number, not %g", fuel);
-    else
+    } else if (!ends(line)) {
+        complain(line, "behind the fuel stands nothing more");
+    } else if (line->shader->fuel_line) {
+        complain(line, "there is a fuel already, in line %u", line->shader->fuel_line);
+    } else {
         line->shader->fuel = (uint32_t)fuel;
+        line->shader->fuel_line = line->number;
+    }
 }
 
 static void read_version(struct line *line)
@@ -381,13 +407,14 @@ static void read_version(struct line *line)
                  "the file is for version `%.60s` of what hooks may use; this whit has %s, "
                  "the first one: see docs/shaders.md",
                  word, own);
+    else if (!ends(line))
+        complain(line, "behind the version stands nothing more");
 }
 
 /* Checks a line `//@ test`; tests.c reads the function that follows. */
 static void read_test_mark(struct line *line)
 {
-    char rest[4];
-    if (!next_word(line, rest, sizeof rest) || rest[0])
+    if (!ends(line))
         complain(line, "behind `//@ test` stands nothing more: the function follows in the next "
                        "line");
 }
@@ -405,13 +432,12 @@ enum { EXPECTED_COUNT = sizeof expected_words / sizeof *expected_words };
 
 static bool read_expected(struct line *line, uint32_t *what)
 {
-    char word[SHADER_NAME_BYTES], equals[4], base[8], rest[4];
+    char word[SHADER_NAME_BYTES], equals[4], base[8];
     bool fits = next_word(line, word, sizeof word);
     for (*what = 0; fits && *what < EXPECTED_COUNT; ++*what) {
         if (strcmp(word, expected_words[*what]) == 0)
             return next_word(line, equals, sizeof equals) && strcmp(equals, "==") == 0 &&
-                   next_word(line, base, sizeof base) && strcmp(base, "base") == 0 &&
-                   next_word(line, rest, sizeof rest) && !rest[0];
+                   next_word(line, base, sizeof base) && strcmp(base, "base") == 0 && ends(line);
     }
     return false;
 }

@@ -61,8 +61,8 @@ struct whit_shader {
     struct shader_tests tests;
     whit_shader_test *test_infos;
     whit_shader_check *check_infos;
-    uint32_t hooks; /* bits 1 << whit_hook */
-    uint32_t fuel;
+    uint32_t hooks;           /* bits 1 << whit_hook */
+    uint32_t fuel, fuel_line; /* fuel_line: of `//@ fuel`; 0: there is none */
     bool trust;
     whit_slider sliders[SHADER_SLIDERS_MAX];
     struct shader_slider_text slider_texts[SHADER_SLIDERS_MAX];

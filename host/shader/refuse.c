@@ -63,6 +63,14 @@ static const char *refused_type(const struct spv_module *m, uint32_t type)
     return NULL;
 }
 
+/* Whether this reads a built-in variable such as gl_GlobalInvocationID. */
+static bool reads_input(const struct spv_module *m, const uint32_t *words)
+{
+    uint32_t op = spv_op(words);
+    const uint32_t *from = op == OP_LOAD || op == OP_ACCESS_CHAIN ? spv_def(m, words[3]) : NULL;
+    return from && spv_op(from) == OP_VARIABLE && from[3] == STORAGE_INPUT;
+}
+
 const char *refuse_instruction(const struct spv_module *m, const uint32_t *words)
 {
     uint32_t op = spv_op(words);
@@ -70,6 +78,8 @@ const char *refuse_instruction(const struct spv_module *m, const uint32_t *words
         return refused_operation(op == OP_NO_LINE ? OP_LINE : op);
     if (op == OP_LOAD && is_fuel(m, words[3]))
         return "whit_fuel is whit's own";
+    if (reads_input(m, words))
+        return "built-in variables are whit's own: pixel() and sample_number() tell calls apart";
     const char *why = op == OP_STORE || op == OP_COPY_MEMORY ? refused_write(m, words) : NULL;
     if (!why)
         why = refused_operation(op);

@@ -276,9 +276,16 @@ void scan_copy_brackets(const char *at, char *out, size_t bytes)
     uint32_t open = 1;
     size_t used = 0;
     for (; *at; ++at) {
+        bool comment = at[0] == '/' && (at[1] == '/' || at[1] == '*');
+        if (comment) {
+            const char *end = at[1] == '/' ? strchr(at, '\n') : strstr(at + 2, "*/");
+            if (!end)
+                break;
+            at = end + (*end == '*');
+        }
         open += *at == '(';
         open -= *at == ')';
-        bool blank = is_blank(*at) || is_newline(*at);
+        bool blank = comment || is_blank(*at) || is_newline(*at);
         if (open == 0 || used + 4 >= bytes)
             break;
         if (!blank)

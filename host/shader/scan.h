@@ -55,8 +55,8 @@ bool scan_next_function(struct scan *scan, struct scan_functions *functions);
 bool scan_follow(const struct scan *scan, struct scan_functions *functions);
 
 /* Copies the text from behind a bracket up to its closing one into `out`, which has `bytes`: runs
-   of blanks become one, none at the ends. It ends with "..." if `out` is too small or the bracket
-   does not close. */
+   of blanks and comments become one blank, none at the ends. It ends with "..." if `out` is too
+   small or the bracket does not close. */
 void scan_copy_brackets(const char *at, char *out, size_t bytes);
 
 #endif

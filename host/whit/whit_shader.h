@@ -175,7 +175,8 @@ WHIT_CHECK whit_result whit_renderer_run_tests(whit_renderer *renderer, whit_che
 /* Draws the picture that was rendered last once more without the shader, and compares the two.
    *held: every expectation of the file holds; without any it is true and nothing is drawn. Broken
    expectations are logged as "FILE:line: ...", with the first pixel and the number of pixels.
-   WHIT_ERROR_USAGE without a device, and others as of whit_renderer_render. */
+   WHIT_ERROR_USAGE without a device, or for identities of a picture that lacks its first sample,
+   and others as of whit_renderer_render. */
 WHIT_CHECK whit_result whit_renderer_check_expectations(whit_renderer *renderer, bool *held);
 
 /* ---- In pictures ---- */

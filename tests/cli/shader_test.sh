@@ -218,6 +218,9 @@ END
     expect 1 "in a picture" render "$SCENES/default.json" $SMALL --shader turned.glsl -o broken.png
     said "says so" "turned.glsl:2: "
     check "no picture" test ! -e broken.png
+    # shellcheck disable=SC2086
+    expect 2 "ids of a refined picture" render "$SCENES/default.json" $SMALL --shader turned.glsl --refine 0.1 -o broken.png
+    said "the expectation" "turned.glsl:2: \`ids == base\` cannot be checked"
     sed 's/0\.1;/0.0;/' turned.glsl >still.glsl
     expect 0 "what is so" shader still.glsl --scene "$CUBE"
     draw "a picture that is as expected" still.png cube --shader still.glsl

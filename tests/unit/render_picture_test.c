@@ -1,8 +1,10 @@
 /* Settings that must not change a picture, and errors that end one. The tests of light, shadows,
    refraction and energy compare radiance with formulas. */
 #include "../wrapped.h"
+#include "device/buffer.h"
 #include "picture_fixture.h"
 #include "render/pixels.h"
+#include "render/readback.h"
 #include "render/renderer.h"
 #include "render/stages.h"
 #include "render/tiles.h"
@@ -504,6 +506,23 @@ TEST(pictures_may_be_dropped)
     own_image after = render(&f);
     assert_same_image("dropped pictures", &before, &after);
     fixture_refuses(&f, &picture_params, 1);
+}
+
+/* Pixels of blocks that stick out of the picture may hold anything. */
+TEST(only_pixels_of_the_picture_are_counted)
+{
+    const whit_renderer_params params = {.width = 20, .height = 12, .depth = 1};
+    own_fixture f = fixture_open(plain_scene(), NULL, &params);
+    own_image image = render(&f);
+    const float bad[4] = {NAN, NAN, NAN, NAN};
+    uint32_t x, y, count;
+    struct buffer *pixels = f.renderer->picture.buffers.pixels;
+    assert_int_equal(buffer_write(pixels, (13 * 20 + 3) * sizeof bad, bad, sizeof bad), WHIT_OK);
+    assert_int_equal(readback_non_finite(&f.renderer->picture, &x, &y, &count), WHIT_OK);
+    assert_int_equal(count, 0);
+    assert_int_equal(buffer_write(pixels, (11 * 20 + 3) * sizeof bad, bad, sizeof bad), WHIT_OK);
+    assert_int_equal(readback_non_finite(&f.renderer->picture, &x, &y, &count), WHIT_OK);
+    assert_true(count == 1 && x == 3 && y == 11);
 }
 
 /* The state of a queued ray holds the most steps that a depth allows, and the slots of a picture's

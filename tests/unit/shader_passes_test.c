@@ -153,9 +153,8 @@ static const struct {
      " g(a[n], n); return a[1][1]; }\n",
      3},
     {"float f(float x, int n) {\n return float(cases[n].x); }\n", 1},
-    {"float g = vec3(1.0)[gl_LocalInvocationID.x];\nfloat f(float x, int n) {\n return g; }\n", 1},
-    {"float f(float x, int n) {\n return float(gl_LocalInvocationID[n]); }\n", 1},
-    {"float h(float x) { return x; } float g = vec3(1.0)[gl_LocalInvocationID.x]; float f(float x, "
+    {"int k = 1; float g = vec3(1.0)[k];\nfloat f(float x, int n) {\n return g; }\n", 1},
+    {"float h(float x) { return x; } int k = 1; float g = vec3(1.0)[k]; float f(float x, "
      "int n) "
      "{ return g + h(x); }\n",
      1},
@@ -210,6 +209,9 @@ static const struct {
     {"float f(float x, int n) {\n return float(atomicAdd(answers[0].x, 1u)); }\n", 2, "atomic"},
     {"float f(float x, int n) {\n whit_fuel = 9u;\n return x; }\n", 2, "whit_fuel is"},
     {"float f(float x, int n) {\n return float(whit_fuel); }\n", 2, "whit_fuel is"},
+    {"float f(float x, int n) {\n return float(gl_GlobalInvocationID.x); }\n", 2, "built-in"},
+    {"float g = float(gl_LocalInvocationIndex);\nfloat f(float x, int n) { return g; }\n", 1,
+     "built-in"},
     {"#define F whit_fuel_loop\nfloat f(float x, int n) {\n F++;\n return x; }\n", 3,
      "whit_fuel is"},
     {"float f(float x, int n) {\n float a[5000];\n a[n] = x;\n return a[0]; }\n", 1, "16 KiB"},

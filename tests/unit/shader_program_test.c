@@ -175,7 +175,10 @@ TEST(lines_that_are_none_are_refused_with_their_line)
                  {"fuel 0", "from 1 to 30000"},
                  {"fuel 30001", "from 1 to 30000"},
                  {"fuel many", "from 1 to 30000"},
+                 {"fuel 10 20", "nothing more"},
                  {"whit 2", "this whit has 1"},
+                 {"whit 1 x", "nothing more"},
+                 {"box 0.15 0 0 0.14 1 1 0.01", "from 0.15"},
                  {"aov", "has a name"},
                  {"aov x y", "has a name"},
                  {"aov shade", "is a function of whit's"},
@@ -202,6 +205,35 @@ TEST(lines_that_are_none_are_refused_with_their_line)
     }
 }
 
+TEST(what_is_there_already_is_refused)
+{
+    static const char *const cases[][2] = {
+        {"fuel 10\n//@ fuel 20", "a fuel already, in line 1"},
+        {"choice mode a,b\n//@ slider mode_a 0 1 0", "`mode_a` already, in line 1"},
+        {"slider mode_b 0 1 0\n//@ choice mode a,b", "`mode_b` already, in line 1"},
+        {"choice a b_c,d\n//@ choice a_b c", "`a_b_c` already, in line 1"},
+        {"choice a b,c\n//@ choice d b,c", ""}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char text[256];
+        whit_shader shader;
+        bool refused = cases[i][1][0];
+        snprintf(text, sizeof text, "//@ %s\nvec3 miss(vec3 dir) { return dir; }\n", cases[i][0]);
+        assert_int_equal(read_text(text, &shader), refused ? WHIT_ERROR_INPUT : WHIT_OK);
+        assert_int_equal(refused ? errors.items[0].line : 2, 2);
+        assert_non_null(strstr(errors.items[0].reason, cases[i][1]));
+        shader_text_free(&shader.text);
+    }
+}
+
+TEST(a_side_of_the_box_may_have_no_length)
+{
+    whit_shader shader;
+    assert_int_equal(read_text("//@ box 0.15 0 0  0.15 1 1  0.01\nvoid f() {}\n", &shader),
+                     WHIT_OK);
+    assert_true(shader.box.lo[0] == 0.15f && shader.box.hi[0] == 0.15f);
+    shader_text_free(&shader.text);
+}
+
 TEST(aovs_stand_before_their_functions)
 {
     whit_shader shader;
@@ -218,7 +250,7 @@ TEST(aovs_stand_before_their_functions)
         {"//@ aov b\nvec4 b(Surface s) { return vec4(0); }\n", "at most 16 aovs"},
         {"//@ aov a3\n", "an aov `a3` already, in line 11"},
         {"//@ slider a3 0 1 0\n", "an aov `a3` already"},
-        {"//@ aov x\n", "a slider `x` already"}};
+        {"//@ aov x\n", "a choice `x` already"}};
     for (size_t i = 0; i < sizeof more / sizeof *more; ++i) {
         strcpy(text + full, more[i][0]);
         assert_int_equal(read_text(text, &shader), WHIT_ERROR_INPUT);
@@ -271,7 +303,7 @@ static whit_result read_tests(const char *content, struct shader_text *text,
 static const char tested[] = "float f(float x) { return x; } // check(\n"
                              "//@ test\n"
                              "void one(uint seed) { /* check(0) */\n"
-                             "    if (seed > 1u) { check( f(1.0)  <=\n"
+                             "    if (seed > 1u) { check( f(1.0)/*)*/<=\n"
                              "        2.0); check(true); }\n"
                              "}\n"
                              "  //@  test \n"
@@ -318,7 +350,7 @@ TEST(kernels_have_tests_numbered_or_blank_in_the_same_lines)
     shader_text_end_copy(&out);
     assert_true(shader_tests_text(&tests, &text, true, &out));
     assert_int_equal(out.files[0].bytes, strlen(out.files[0].text));
-    assert_non_null(strstr(out.files[0].text, "check(0u, 1u,  f(1.0)  <=\n        2.0);"));
+    assert_non_null(strstr(out.files[0].text, "check(0u, 1u,  f(1.0)/*)*/<=\n        2.0);"));
     assert_non_null(strstr(out.files[0].text, "check(0u, 2u, true);"));
     assert_non_null(strstr(out.files[0].text, "{ check(0u, 1u, (n)==n); } float g()"));
     shader_text_end_copy(&out);
