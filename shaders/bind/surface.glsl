@@ -233,4 +233,22 @@ void take_footprint(inout Surface s, vec3 dir, float area)
     s.footprint = parts * (0.5 * area / (seen * seen));
 }
 
+// Turns the normals to the ray's side. True: the ray comes from inside.
+bool face_ray(inout Surface s, vec3 dir)
+{
+    bool inside = dot(dir, s.ng) > 0.0;
+    if (inside) {
+        s.ng = -s.ng;
+        s.ns = -s.ns;
+    }
+    s.turned = inside;
+    if (dot(s.ns, s.ng) < 0.0) {
+        s.ns = -s.ns;
+        s.turned = !inside;
+    }
+    if (dot(s.ns, dir) > 0.0)
+        s.ns = s.ng;
+    return inside;
+}
+
 #endif

@@ -83,8 +83,8 @@ vec3 off_surface(Surface s, vec3 dir) ELSEWHERE(vec3)
 // The share of light that comes to a surface from the distance `distance` along `dir`: 1 where
 // nothing is in between, 0 behind something opaque. The surface does not block itself.
 vec3 visible(Surface s, vec3 dir, float distance) TRACES(vec3)
-// Finds the surface that a ray hits first, and its distance. False: it hits nothing, and `met` is
-// undefined.
+// Finds the surface that a ray hits first, without normal maps, and its distance. False: it hits
+// nothing, and `met` is undefined.
 bool trace(vec3 origin, vec3 dir, out Surface met, out float distance) TRACES(bool)
 // The light that a surface sends to `to_eye` because of one light, with shadows.
 vec3 lit_by(uint index, Surface s, Optics o, vec3 to_eye) TRACES(vec3)

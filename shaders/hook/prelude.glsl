@@ -236,10 +236,7 @@ bool trace(vec3 origin, vec3 dir, out Surface met, out float distance)
         met = fetch_surface(hit);
         traced_hit = hit;
         traced_shade = met.shade_index;
-        if (dot(dir, met.ng) > 0.0)
-            met.ng = -met.ng;
-        if (dot(met.ns, met.ng) < 0.0)
-            met.ns = -met.ns;
+        face_ray(met, dir);
     }
     return some;
 }

@@ -44,7 +44,7 @@ mutation(edge_entered_twice render_media RED edges_are_crossed_once)
 change(shaders/bind/crossing.glsl [[same != CROSSED_MAX && left == leaves;]] [[false;]])
 
 mutation(averted_normals_kept render_shading RED averted_normals_give_way)
-change(shaders/bind/crossing.glsl [[if (dot(s.ns, dir) > 0.0)]] [[if (false)]])
+change(shaders/bind/surface.glsl [[if (dot(s.ns, dir) > 0.0)]] [[if (false)]])
 change(shaders/hook/met.glsl [[if (dot(met.s.ns, met.ray.dir) > 0.0)]] [[if (false)]])
 
 mutation(second_uvs_unread render_shading RED each_texture_has_its_coordinates)

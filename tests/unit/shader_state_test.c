@@ -46,6 +46,28 @@ TEST_IN(surfaces_that_trace_meets_are_shadowed, begin, hooks_end)
     assert_true(below > PIXELS / 50);
 }
 
+/* Rays along a rounded surface would see shading normals that point away from them. */
+TEST_IN(normals_that_trace_meets_face_the_ray, begin, hooks_end)
+{
+    draw("vec3 shade(Surface s, Optics o, vec3 to_eye) {\n"
+         " float away = 0.0, met = 0.0;\n"
+         " for (uint i = 0u; i < 32u; i++) { Surface m; float d;\n"
+         "  vec3 dir = normalize(vec3(random(3u * i), random(3u * i + 1u), random(3u * i + 2u)) - "
+         "0.5);\n"
+         "  if (!trace(off_surface(s, dir), dir, m, d)) continue;\n"
+         "  met = 1.0; away += dot(m.ns, dir) > 0.0 || dot(m.ng, dir) > 0.0 ? 1.0 : 0.0; }\n"
+         " return vec3(met, away, 0.0); }\n"
+         "vec3 miss(vec3 dir) { return vec3(0.0); }\n"
+         "void scatter(Surface s, Optics o, inout Rays rays) {}\n",
+         pixels);
+    uint32_t some = 0;
+    for (uint32_t i = 0; i < PIXELS; ++i) {
+        some += pixels[i][0] == 1.0f;
+        assert_true(pixels[i][1] == 0.0f);
+    }
+    assert_true(some > PIXELS / 4);
+}
+
 TEST_IN(random_numbers_of_post_differ_and_repeat, begin, hooks_end)
 {
     static const char content[] = "vec3 post(ivec2 at, vec3 color) { return vec3(random(0u), "
