@@ -100,9 +100,8 @@ bool light_at(const struct tracer *tracer, const struct scene_light *light, uint
         sample->strength = fmin(cos_emitter / square, LIGHT_MAX);
         share = light_area_share(tracer->reference, light) * sample->strength;
     }
-    sample->arriving = at_most(d3_scale(sample->arriving, share));
-    if (light->range > 0.0f && sample->distance > (double)light->range)
-        return false;
+    sample->arriving =
+        at_most(d3_scale(sample->arriving, share * scene_light_fade(light, sample->distance)));
     sample->distance -= end_before(tracer->reference, light, p, way, cos_away);
     return d3_largest(sample->arriving) > 0.0;
 }

@@ -42,7 +42,7 @@ static struct gpu_light make_light(const struct scene_light *light, uint32_t sam
 {
     struct gpu_light out = {
         .kind = light_code(light->kind),
-        .range = light->range > 0.0f ? light->range : INFINITY,
+        .per_range = light->range > 0.0f ? 1.0f / light->range : 0.0f,
         .falloff = light->falloff || light->kind == WHIT_LIGHT_AREA_SAMPLE,
         .spot_edge = light->versine_outer,
         .spot_slope = (float)(1.0 / scene_light_cone_width(light)),

@@ -68,7 +68,7 @@ static double arriving(const struct scene_light *light, const double way[3], dou
         value *= light->two_sided ? fabs(along) : fmax(along, 0.0);
     if (light->kind == WHIT_LIGHT_SPOT && 1.0 - along > (double)light->versine_outer)
         value = 0.0;
-    return light->range > 0.0f && distance > (double)light->range ? 0.0 : value;
+    return value * scene_light_fade(light, distance);
 }
 
 /* Brightness by a flat emitter, with the surface's cosine and without shadows: the sum over cells

@@ -215,6 +215,12 @@ void scene_light_cones(struct scene_light *light, double inner, double outer)
     light->versine_outer = versine(outer);
 }
 
+double scene_light_fade(const struct scene_light *light, double distance)
+{
+    double far = light->range > 0.0f ? distance / (double)light->range : 0.0;
+    return fmax(1.0 - far * far * far * far, 0.0);
+}
+
 double scene_light_cone_width(const struct scene_light *light)
 {
     double outer = (double)light->versine_outer, width = outer - (double)light->versine_inner;

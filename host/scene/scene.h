@@ -333,6 +333,9 @@ void scene_note(struct scene *scene, enum scene_note_level level, const char *fo
 
 /* Sets the cones of a spot light by their angles to its middle, in radians. */
 void scene_light_cones(struct scene_light *light, double inner, double outer);
+/* The share of its light that a light with a range has at this distance, by KHR_lights_punctual:
+   1 - (distance / range)^4, 0 from the range on. */
+double scene_light_fade(const struct scene_light *light, double distance);
 /* How much the versine grows between the cones of a spot light; above 0, also where they are
    equal. */
 double scene_light_cone_width(const struct scene_light *light);

@@ -113,7 +113,7 @@ struct gpu_light {
     gpu_vec3 position;
     gpu_uint kind;
     gpu_vec3 direction; /* unit, the direction in which the light travels */
-    gpu_float range;    /* infinity: no limit */
+    gpu_float per_range; /* 1 / range; 0: no limit */
     gpu_vec3 color;
     gpu_uint falloff; /* 1: 1 / distance^2 */
     gpu_float spot_edge;  /* 1 - cosine of a spot's outer cone */

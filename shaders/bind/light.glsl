@@ -162,8 +162,8 @@ bool light_at(gpu_light light, uint index, vec3 p, out LightSample from)
         from.arriving = light.color * (light.area_share * from.strength);
     }
     from.arriving = min(from.arriving, vec3(LIGHT_MAX));
-    if (from.distance > light.range)
-        return false;
+    float far = from.distance * light.per_range;
+    from.arriving *= max(1.0 - (far * far) * (far * far), 0.0); // KHR_lights_punctual, "range"
     // Shortened: a surface in which the light lies, as a ceiling may be, casts no shadow.
     if (flat_emitter || light.kind == LIGHT_AREA_SAMPLE) {
         float off = max(light.end, plane_rounding(p, largest));
