@@ -126,6 +126,7 @@ static struct scene_light light_of(struct scene *scene, const struct emitter *em
         .origin = {.file = scene_text(scene, material->origin.file), .line = material->origin.line},
         .node = scene->instances[emitter->instance].node,
         .falloff = true,
+        .versine_outer = 1.0f,
         /* Winding gives the lit side only in glTF: OBJ files wind their lamps either way. */
         .two_sided = material->two_sided || material->model != WHIT_MODEL_METAL_ROUGH,
         .made_by_whit = true,

@@ -85,13 +85,15 @@ static void hash_channel(struct hash *hash, const struct scene_channel *c)
     HASH_ARRAY(hash, c->values, (size_t)c->key_count * scene_channel_width(c));
 }
 
-/* Lights without cones are hashed by cosines, as goldens hold them. */
+/* Goldens hold hashes of the time when lights had cosines of cones: those of spots are new, others,
+   whose cones are of no use, keep theirs. A light without cones had zeros. */
 static void hash_light(struct hash *hash, const struct scene_light *l)
 {
     const uint32_t words[] = {(uint32_t)l->kind, l->node, l->falloff, l->two_sided};
-    bool spot = l->kind == WHIT_LIGHT_SPOT;
-    const float values[] = {l->range, spot ? l->versine_inner : 1.0f - l->versine_inner,
-                            spot ? l->versine_outer : 1.0f - l->versine_outer};
+    float cones[2] = {l->versine_inner, l->versine_outer};
+    for (int i = 0; i < 2 && l->kind != WHIT_LIGHT_SPOT && l->versine_outer > 0.0f; ++i)
+        cones[i] = 1.0f - cones[i];
+    const float values[] = {l->range, cones[0], cones[1]};
     HASH_FIELD(hash, words);
     HASH_FIELD(hash, values);
     HASH_FIELD(hash, l->position);
