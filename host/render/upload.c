@@ -145,7 +145,8 @@ static whit_result upload_trees(struct renderer *renderer)
 }
 
 /* Writes one record of `words` words for a triangle. */
-typedef void (*fill_triangle)(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out);
+typedef void (*fill_triangle)(const struct scene *scene, const struct scene_mesh *mesh,
+                              uint32_t triangle, uint32_t *out);
 
 /* Writes the records that `fill` makes of every triangle of every mesh, each mesh once, to the
    shading rows from `row` on. */
@@ -164,7 +165,7 @@ static whit_result write_triangles(struct renderer *renderer, uint32_t row, uint
         const struct scene_mesh *mesh = &scene->meshes[m];
         for (uint32_t t = 0; result == WHIT_OK && t < scene_mesh_primitives(mesh); ++t) {
             memset(&slice[used], 0, words * sizeof *slice);
-            fill(mesh, t, &slice[used]);
+            fill(scene, mesh, t, &slice[used]);
             used += words;
             if (used + words <= SLICE_WORDS)
                 continue;
@@ -179,14 +180,18 @@ static whit_result write_triangles(struct renderer *renderer, uint32_t row, uint
     return result;
 }
 
-static void fill_material(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
+static void fill_material(const struct scene *scene, const struct scene_mesh *mesh,
+                          uint32_t triangle, uint32_t *out)
 {
+    (void)scene;
     out[3] = mesh->materials[triangle];
 }
 
 /* Flat meshes and spheres get zeros: shading then takes the geometric normal. */
-static void fill_normals(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
+static void fill_normals(const struct scene *scene, const struct scene_mesh *mesh,
+                         uint32_t triangle, uint32_t *out)
 {
+    (void)scene;
     for (size_t k = 0; k < 3; ++k) {
         if (mesh->normals)
             memcpy(&out[4 * k], &mesh->normals[3 * (size_t)mesh->indices[3 * (size_t)triangle + k]],
@@ -195,26 +200,62 @@ static void fill_normals(const struct scene_mesh *mesh, uint32_t triangle, uint3
     }
 }
 
-static void fill_uvs(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out, int set)
+/* Whether a material shows the same where whole pairs of periods are taken off the coordinates of a
+   UV set. */
+static bool repeats(const struct scene_material *m, int set)
+{
+    for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
+        const struct scene_texture_use *use = &m->textures[slot];
+        const float *t = use->transform;
+        if (use->texture == SCENE_NONE || (use->uv_set != 0) != set)
+            continue;
+        if (use->wrap_u == SCENE_WRAP_CLAMP || use->wrap_v == SCENE_WRAP_CLAMP ||
+            t[0] != floorf(t[0]) || t[1] != floorf(t[1]) || t[3] != floorf(t[3]) ||
+            t[4] != floorf(t[4]))
+            return false;
+    }
+    return true;
+}
+
+/* Brings a triangle whose coordinates are far from 0 near it: kernels interpolate in floats. */
+static void take_off_periods(float uvs[6])
+{
+    for (int axis = 0; axis < 2; ++axis) {
+        float least = fminf(uvs[axis], fminf(uvs[2 + axis], uvs[4 + axis]));
+        float periods =
+            fabsf(least) >= 64.0f && isfinite(least) ? 2.0f * floorf(0.5f * least) : 0.0f;
+        for (int k = 0; k < 3; ++k)
+            uvs[2 * k + axis] -= periods;
+    }
+}
+
+static void fill_uvs(const struct scene *scene, const struct scene_mesh *mesh, uint32_t triangle,
+                     uint32_t *out, int set)
 {
     /* Hits on spheres have u and v in place of barycentric weights (shaders/bind/surface.glsl). */
     static const float unit[6] = {0, 0, 1, 0, 0, 1};
     const float *uvs = mesh->uvs[set] ? mesh->uvs[set] : mesh->uvs[0];
-    if (mesh->sphere_count)
-        memcpy(out, unit, sizeof unit);
+    float corners[6];
+    memcpy(corners, unit, sizeof corners);
     for (size_t k = 0; uvs && k < 3; ++k)
-        memcpy(&out[2 * k], &uvs[2 * (size_t)mesh->indices[3 * (size_t)triangle + k]],
+        memcpy(&corners[2 * k], &uvs[2 * (size_t)mesh->indices[3 * (size_t)triangle + k]],
                2 * sizeof(float));
+    if (uvs && repeats(&scene->materials[mesh->materials[triangle]], set))
+        take_off_periods(corners);
+    if (uvs || mesh->sphere_count)
+        memcpy(out, corners, sizeof corners);
 }
 
-static void fill_first_uvs(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
+static void fill_first_uvs(const struct scene *scene, const struct scene_mesh *mesh,
+                           uint32_t triangle, uint32_t *out)
 {
-    fill_uvs(mesh, triangle, out, 0);
+    fill_uvs(scene, mesh, triangle, out, 0);
 }
 
-static void fill_second_uvs(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
+static void fill_second_uvs(const struct scene *scene, const struct scene_mesh *mesh,
+                            uint32_t triangle, uint32_t *out)
 {
-    fill_uvs(mesh, triangle, out, 1);
+    fill_uvs(scene, mesh, triangle, out, 1);
 }
 
 static uint32_t pack_unorm2x16(float x, float y)
@@ -223,8 +264,10 @@ static uint32_t pack_unorm2x16(float x, float y)
     return (uint32_t)(cx * 65535.0f + 0.5f) | (uint32_t)(cy * 65535.0f + 0.5f) << 16;
 }
 
-static void fill_colors(const struct scene_mesh *mesh, uint32_t triangle, uint32_t *out)
+static void fill_colors(const struct scene *scene, const struct scene_mesh *mesh, uint32_t triangle,
+                        uint32_t *out)
 {
+    (void)scene;
     static const float white[4] = {1, 1, 1, 1};
     for (size_t k = 0; k < 3; ++k) {
         const float *color =

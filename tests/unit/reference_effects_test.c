@@ -292,8 +292,25 @@ static struct scene *far_offset(enum scene_wrap wrap)
     return scene;
 }
 
+/* A floor whose texture coordinates are far from 0. */
+static struct scene *far_coordinates(void)
+{
+    struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
+    struct scene_material m = unlit(1, 1, 1);
+    struct scene_mesh plane = mesh_plane(4);
+    use_texture(&m, SCENE_SLOT_DIFFUSE, add_noise(scene, 0, false));
+    struct scene_texture_use *use = &m.textures[SCENE_SLOT_DIFFUSE];
+    use->nearest = false;
+    use->wrap_u = use->wrap_v = SCENE_WRAP_MIRROR;
+    for (uint32_t i = 0; i < 2 * plane.vertex_count; ++i)
+        plane.uvs[0][i] += i % 2 ? 65537.0f : -65537.0f;
+    add_object(scene, plane, m, 0, 0, 0);
+    return scene;
+}
+
 TEST(scarce_digits_agree)
 {
+    assert_agrees("far coordinates", far_coordinates());
     assert_agrees("far repeated", far_offset(SCENE_WRAP_REPEAT));
     assert_agrees("far mirrored", far_offset(SCENE_WRAP_MIRROR));
     assert_agrees("narrow spot", narrow_spot());
