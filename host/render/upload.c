@@ -200,10 +200,11 @@ static void fill_normals(const struct scene *scene, const struct scene_mesh *mes
     }
 }
 
-/* Whether a material shows the same where whole pairs of periods are taken off the coordinates of a
-   UV set. */
+/* Whether a material has textures of a UV set that show the same where whole pairs of periods are
+   taken off its coordinates. Without textures only a user's functions read them. */
 static bool repeats(const struct scene_material *m, int set)
 {
+    bool used = false;
     for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
         const struct scene_texture_use *use = &m->textures[slot];
         const float *t = use->transform;
@@ -213,8 +214,9 @@ static bool repeats(const struct scene_material *m, int set)
             t[0] != floorf(t[0]) || t[1] != floorf(t[1]) || t[3] != floorf(t[3]) ||
             t[4] != floorf(t[4]))
             return false;
+        used = true;
     }
-    return true;
+    return used;
 }
 
 /* Brings a triangle whose coordinates are far from 0 near it: kernels interpolate in floats. */
