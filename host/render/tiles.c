@@ -84,7 +84,9 @@ whit_result status_check(struct target *target)
         hooks_describe_file(target->renderer, file, sizeof file);
     /* Only the cause is told: what loops that were cut short have made follows from it. */
     if (word & (STATUS_FUEL | STATUS_CUT_LOOPS))
-        word &= ~(STATUS_UNFINISHED_TRAVERSAL | STATUS_UNFINISHED_LOOP | STATUS_SHAPE);
+        word &= ~(STATUS_UNFINISHED_TRAVERSAL | STATUS_UNFINISHED_LOOP);
+    if (word & STATUS_CUT_LOOPS)
+        word &= ~STATUS_SHAPE;
     if (word & STATUS_FUEL)
         word &= ~STATUS_CUT_LOOPS;
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {

@@ -17,7 +17,7 @@ const char *const hud_names[HUD_COUNT] = {"off", "small", "full"};
 /* Height of figures and a panel below them, and of a panel alone, pixels. */
 static const float ROOM_FOR_BOTH = 400.0f, ROOM_FOR_PANEL = 220.0f;
 /* A window of less width or height has one opened panel at a time. */
-static const float ROOM_FOR_PANELS_X = 900.0f, ROOM_FOR_PANELS_Y = 600.0f;
+static const float ROOM_FOR_PANELS_X = 600.0f, ROOM_FOR_PANELS_Y = 440.0f;
 
 void hud_quality(const struct view *view, char text[HUD_QUALITY_BYTES])
 {

@@ -249,7 +249,7 @@ END
         *'"at":"moved"'*) cp plain.new live/d.glsl ;;
         esac
     }
-    follow "what values are" cube.json --size 200x150 --ui-scale 0.5 --shader live/d.glsl
+    follow "what values are" cube.json --size 320x240 --ui-scale 0.5 --shader live/d.glsl
 fi
 
 # ---- Widgets of sliders change the next picture without compiling ----
