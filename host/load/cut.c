@@ -32,12 +32,15 @@ whit_result cut_check_stl(struct scene *scene, const char *path, uint8_t *data, 
     enum { HEAD_BYTES = 84, TRIANGLE_BYTES = 50 };
     /* The header of a binary STL is any text, also `solid`. But no text has zero bytes, and every
        count of less than 2^24 has. */
-    if (*size_bytes < HEAD_BYTES || !memchr(data, 0, HEAD_BYTES)) {
+    const uint8_t *at = data + HEAD_BYTES - 4;
+    uint64_t count = *size_bytes < HEAD_BYTES ? 0
+                                              : at[0] | (uint64_t)at[1] << 8 |
+                                                    (uint64_t)at[2] << 16 | (uint64_t)at[3] << 24;
+    bool whole = count && *size_bytes == HEAD_BYTES + count * TRIANGLE_BYTES;
+    if (*size_bytes < HEAD_BYTES || (!whole && !memchr(data, 0, HEAD_BYTES))) {
         repair_text((char *)data, size_bytes);
         return WHIT_OK;
     }
-    const uint8_t *at = data + HEAD_BYTES - 4;
-    uint64_t count = at[0] | (uint64_t)at[1] << 8 | (uint64_t)at[2] << 16 | (uint64_t)at[3] << 24;
     uint64_t room = (*size_bytes - HEAD_BYTES) / TRIANGLE_BYTES;
     uint64_t used = HEAD_BYTES + count * TRIANGLE_BYTES;
     if (count > room || (count == 0 && room)) {
@@ -65,7 +68,7 @@ static char *clean_off(const char *text, size_t size_bytes)
 {
     static const char keyword[] = "OFF\n";
     char *out = array_alloc(size_bytes + sizeof keyword + 1, 1), *to = out;
-    for (const char *at = text; out && *at;) {
+    for (const char *at = text + text_mark_bytes(text); out && *at;) {
         at += strspn(at, " \t\r\n");
         size_t bytes = strcspn(at, "#\r\n");
         if (bytes && to == out && !isalpha((unsigned char)at[strspn(at, "4")]))

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "image/image.h"
 #include "load/importer_glb.h"
 #include "load/threemf.h"
@@ -87,6 +88,36 @@ static void place(struct aiScene *scene, const struct import_request *request,
         place_3mf(&request->files[0], counts, &placed);
     aiMultiplyMatrix4(&placed, &scene->mRootNode->mTransformation);
     scene->mRootNode->mTransformation = placed;
+}
+
+/* --- textures ------------------------------------------------------------------------------- */
+
+/* Cuts absolute paths with letters beyond ASCII down to the file's name: they are of the exporter's
+   machine, often in a code page of its own, and JSON has to be UTF-8. */
+static void shorten_paths(struct aiMaterial *material)
+{
+    for (unsigned i = 0; i < material->mNumProperties; i++) {
+        struct aiMaterialProperty *property = material->mProperties[i];
+        struct aiString path = {0};
+        if (strcmp(property->mKey.data, "$tex.file") != 0 ||
+            aiGetMaterialString(material, property->mKey.data, property->mSemantic,
+                                property->mIndex, &path) != aiReturn_SUCCESS)
+            continue;
+        bool ascii = true;
+        for (char *c = path.data; *c; c++) {
+            ascii = ascii && (unsigned char)*c < 0x80;
+            *c = *c == '\\' ? '/' : *c;
+        }
+        if (ascii || (path.data[0] != '/' && path.data[1] != ':'))
+            continue;
+        /* The property has room: the new path is no longer than the old one. Its layout is a
+           length, the text and a zero byte. */
+        const char *name = path_name(path.data);
+        ai_uint32 length = (ai_uint32)strlen(name);
+        memcpy(property->mData, &length, sizeof length);
+        memcpy(property->mData + sizeof length, name, length + 1);
+        property->mDataLength = (unsigned)(sizeof length + length + 1);
+    }
 }
 
 /* --- highlights ----------------------------------------------------------------------------- */
@@ -194,6 +225,7 @@ const struct aiExportDataBlob *importer_glb(struct aiScene *scene,
         scale_colors(scene->mMeshes[i]);
     place(scene, request, counts);
     for (unsigned i = 0; i < scene->mNumMaterials; i++) {
+        shorten_paths(scene->mMaterials[i]);
         restate_highlight(scene->mMaterials[i], request->kind);
         if (request->kind == IMPORT_3MF)
             decode_color(scene->mMaterials[i]);

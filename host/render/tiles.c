@@ -66,9 +66,10 @@ whit_result status_check(struct target *target)
         {STATUS_MEDIUM_STACK_OVERFLOW, "a ray was in more media at once than its stack holds"},
         {STATUS_UNFINISHED_LOOP, "a loop over lights was cut short (the driver ends long loops)"},
         {STATUS_FUEL, "a loop of the shader took more iterations than it may"},
-        {STATUS_CUT_LOOPS, "loops of the shader, with those of trace() and visible(), took more "
-                           "iterations than the driver allows all loops of a kernel together "
-                           "(65,535 on lavapipe)"},
+        {STATUS_CUT_LOOPS,
+         "loops of the shader, with whit's own in trace(), visible() and the kernel "
+         "around it, took more iterations than the driver allows all loops of a "
+         "kernel together (65,535 on lavapipe)"},
         {STATUS_SHAPE, "the answer for the shader's shape is wrong"},
     };
     char text[2048] = "", where[768] = "", loop[768] = "", shape[768] = "", file[768] = "";

@@ -548,7 +548,9 @@ static void note_crowd(struct view *view)
     bool same = was->open == now.open && was->hud == now.hud && was->width == now.width &&
                 was->height == now.height;
     bool low = same ? was->low || now.low : now.low;
-    view->dirty |= low && !was->low;
+    if (!same)
+        ui_forget_panel("figures"); /* others may be as high as there is room for */
+    view->dirty |= !same || (low && !was->low);
     *was = now;
     was->low = low;
 }

@@ -531,7 +531,13 @@ bool ui_is_crowded(const struct ui *)
 
 float ui_panel_height(const char *title)
 {
-    return layout.panels[find_panel(title)].size.y;
+    float height = layout.panels[find_panel(title)].content.y;
+    return height > 0.0f ? height + 2.0f * ImGui::GetStyle().WindowPadding.y : 0.0f;
+}
+
+void ui_forget_panel(const char *title)
+{
+    layout.panels[find_panel(title)].content = ImVec2(0.0f, 0.0f);
 }
 
 float ui_scale(const struct ui *ui)

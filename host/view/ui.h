@@ -52,6 +52,7 @@ float ui_scale(const struct ui *ui);
 bool ui_is_crowded(const struct ui *ui);
 /* The height that the panel had when it was last drawn, pixels; 0: it was not. */
 float ui_panel_height(const char *title);
+void ui_forget_panel(const char *title); /* as if it was not drawn yet */
 /* For tests: the label, up to "##", and the middle of the button or other item number `index` of
    the last frame; false: there are fewer items. */
 bool ui_item(uint32_t index, const char **label, float *x, float *y);

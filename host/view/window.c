@@ -9,6 +9,7 @@
 
 #include "base/array.h"
 #include "base/child.h"
+#include "base/file.h"
 
 enum { EVENTS_HELD = 256 };
 enum { WINDOW_LOST_EXIT = 3 }; /* as where there is no display */
@@ -210,7 +211,9 @@ static whit_result fail(struct window *window, const char *what)
 static int lose_display(void *display)
 {
     (void)display;
-    log_error(&the_window->log, "the display of the window is gone");
+    if (the_window)
+        log_error(&the_window->log, "the display of the window is gone");
+    file_abandon_all();
     _Exit(WINDOW_LOST_EXIT);
 }
 

@@ -97,5 +97,14 @@ long-effects: press X
 long-pixel: press X, click 160 120
 END
     uncut long effects pixel
+
+    # Figures that gave way to a panel come back beside it when they are fewer.
+    play "fewer figures" "$CUBE" --size 640x480 --ui-scale 1 <<END
+full: press F2, press Tab
+few: press F2 x2
+again: press Tab x2
+END
+    check "figures and settings" test -n "$(value few panels.figures)" -a -n "$(value few panels.Settings)"
+    is few panels.figures "$(value again panels.figures)"
 fi
 finish

@@ -96,6 +96,9 @@ TEST_IN(comments_and_colors_of_faces_of_an_off, fixture_begin, fixture_end)
     assert_int_equal(scene->meshes[0].triangle_count, 2);
     assert_place(scene, 0, 2, 1, 2, 0);
     assert_true(fixture_noted("a.off: colours of 1 faces are not read"));
+    load(put_text("b.off", "\xef\xbb\xbf"
+                           "OFF\n4 1 0\n" SQUARE "4 0 1 2 3\n"));
+    assert_int_equal(scene->meshes[0].triangle_count, 2);
 }
 
 /* --- COLLADA -------------------------------------------------------------------------------- */
@@ -336,7 +339,10 @@ static const char *write_fbx(int corners)
     char indices[4096] = "";
     for (int i = 0; i + 1 < corners; i++)
         strcat(indices, i % 2 ? "1," : "0,");
-    own_memory char *text = string_format(fbx, corners, indices, corners == 3 ? ".." : "C:");
+    own_memory char *text = string_format(fbx, corners, indices,
+                                          corners == 3   ? ".."
+                                          : corners == 4 ? "C:"
+                                                         : "C:\\w\xfcrk");
     assert_non_null(text);
     return put_text("a.fbx", text);
 }
@@ -354,11 +360,13 @@ TEST_IN(fbx_in_two_centimetres_and_z_up, fixture_begin, fixture_end)
     assert_place(scene, 0, 1, 1, 0.5, 0);
     assert_place(scene, 0, 2, 0, 2.5, 0);
     assert_float_equal(material_of(scene)->diffuse[1], 0.5, 1e-6);
-    load(write_fbx(4));
-    assert_int_equal(scene->texture_count, 1);
-    assert_true(fixture_noted("texture `wood.png`"));
-    assert_false(fixture_noted("no such file")); /* it is beside the model */
-    assert_false(fixture_noted("outside"));
+    for (int corners = 4; corners <= 5; ++corners) { /* the last path is Latin-1 */
+        load(write_fbx(corners));
+        assert_int_equal(scene->texture_count, 1);
+        assert_true(fixture_noted("texture `wood.png`"));
+        assert_false(fixture_noted("no such file")); /* it is beside the model */
+        assert_false(fixture_noted("outside"));
+    }
 }
 
 /* --- 3MF ------------------------------------------------------------------------------------ */
