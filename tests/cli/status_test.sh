@@ -72,19 +72,29 @@ awk 'BEGIN {
     for (i = 0; i < n; ++i)
         printf "f %d %d %d\n", 3 * i + 1, 3 * i + 2, 3 * i + 3 }' >"$OUT/pile.obj"
 camera="--camera 0,0,99999,0,0,0,0,1,0,0.0001 --up y"
-distrust "too many nodes" "a traversal was cut short" \
+# cut WHAT TEXT ARGUMENTS...: as distrust, on a driver that ends long loops: Mesa 22. Others draw the picture.
+"$WHIT" devices >"$OUT/devices"
+cut() {
+    if grep -q "Mesa 22\." "$OUT/devices"; then
+        distrust "$@"
+    else
+        what=$1
+        shift 2
+        expect 0 "$what" render "$@" -o p.exr --quiet
+    fi
+}
+cut "too many nodes" "a traversal was cut short" \
     "$OUT/pile.obj" --size 8x8 --leaf 1 --traversal basic --shadows none $camera
 expect 0 "the nearest first" render "$OUT/pile.obj" -o p.exr --size 8x8 --leaf 1 --shadows none $camera --quiet
 rm p.exr
 
-# Loops of a user's functions count together with each other and with the traversals that these call. A driver that
-# allows them all draws the picture.
+# Loops of a user's functions count together with each other and with the traversals that these call.
 for i in 1 2 3; do
     echo "//@ aov a$i"
     echo "vec4 a$i(Surface s) { float n = 0.0; for (int i = 0; i < 25000; i++) n += fract(s.p.x); return vec4(n); }"
 done >"$OUT/loops.glsl"
 sed -i '1s/^/\/\/@ fuel 30000\n/' "$OUT/loops.glsl"
-distrust "loops of a shader" "loops of the shader, .* all loops of a kernel together .*loops.glsl has functions" \
+cut "loops of a shader" "loops of the shader, .* all loops of a kernel together .*loops.glsl has functions" \
     "$SCENES/cube.json" --size 8x8 --shader "$OUT/loops.glsl"
 rm p.exr
 
@@ -92,9 +102,11 @@ rm p.exr
 ZERO='\000\000\000\000'
 printf "$ZERO$ZERO\000\000\200\107$ZERO$ZERO$ZERO\000\000\200\277\000\000\200\177" >"$OUT/ray"
 echo old >p.exr
-refuse 1 "trace through too many nodes" "not to be trusted: a traversal was cut short" \
-    trace "$OUT/pile.obj" --input "$OUT/ray" -o p.exr --leaf 1 --traversal basic --quiet
-check "leaves the old hits" test "$(cat p.exr)" = old
+if grep -q "Mesa 22\." "$OUT/devices"; then
+    refuse 1 "trace through too many nodes" "not to be trusted: a traversal was cut short" \
+        trace "$OUT/pile.obj" --input "$OUT/ray" -o p.exr --leaf 1 --traversal basic --quiet
+    check "leaves the old hits" test "$(cat p.exr)" = old
+fi
 expect 0 "on the CPU" \
     trace "$OUT/pile.obj" --input "$OUT/ray" -o p.exr --leaf 1 --traversal basic --quiet --on cpu
 check "gives a hit" test "$(wc -c <p.exr)" -eq 32
