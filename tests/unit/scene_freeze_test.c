@@ -310,7 +310,6 @@ TEST(lamps_light_by_their_opacity)
         material.alpha = SCENE_ALPHA_BLEND;
         own_scene *thin = panel_of(material, steps);
         material.alpha = SCENE_ALPHA_MASK; /* below the cutoff */
-        material.name = string_copy("panel");
         own_scene *none = panel_of(material, steps);
         scene_ready(thin);
         double sum = 0.0, area = steps == 1 ? 1.0 : 6.0 / 3.14159265358979;
