@@ -1,4 +1,4 @@
-/* What assimp does not import of a 3MF. */
+/* The parts of a 3MF that whit reads itself, since assimp does not import them. */
 #ifndef LOAD_THREEMF_H
 #define LOAD_THREEMF_H
 

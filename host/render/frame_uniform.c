@@ -51,7 +51,7 @@ whit_result frame_fill(struct renderer *renderer)
             renderer->packets ? accel->bvh8.mesh_roots[renderer->scene->instances[0].mesh] : 0;
         frame->shade_base = mesh->shade_base;
     }
-    frame->turns = 2;
+    frame->iterations = 2;
     frame->depth = renderer->params.depth;
     frame->slot_shift = pixels_slot_shift(renderer->params.depth);
     double bailout = renderer->params.bailout;

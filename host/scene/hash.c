@@ -85,8 +85,8 @@ static void hash_channel(struct hash *hash, const struct scene_channel *c)
     HASH_ARRAY(hash, c->values, (size_t)c->key_count * scene_channel_width(c));
 }
 
-/* Goldens hold hashes of the time when lights had cosines of cones: those of spots are new, others,
-   whose cones are of no use, keep theirs. A light without cones had zeros. */
+/* Only spots have cones, as 1 - cosine. Other lights are hashed with the cosines that they had in
+   earlier versions (0 where a format states no cones), so that goldens of that time still fit. */
 static void hash_light(struct hash *hash, const struct scene_light *l)
 {
     const uint32_t words[] = {(uint32_t)l->kind, l->node, l->falloff, l->two_sided};

@@ -50,7 +50,8 @@ bool ui_wants_again(const struct ui *ui);
 float ui_scale(const struct ui *ui);
 /* Whether a panel that takes the mouse had no room beside earlier ones, since ui_begin. */
 bool ui_is_crowded(const struct ui *ui);
-/* The height that the panel had when it was last drawn, pixels; 0: it was not. */
+/* The height that the content of a panel needed when it was last drawn, with the panel's frame, in
+   pixels; 0: it was not drawn yet. */
 float ui_panel_height(const char *title);
 void ui_forget_panel(const char *title); /* as if it was not drawn yet */
 /* For tests: the label, up to "##", and the middle of the button or other item number `index` of

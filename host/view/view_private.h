@@ -73,7 +73,7 @@ struct view {
     bool prices_open;
     unsigned open; /* the opened panels when the window was last drawn: hud.c */
     struct view_crowd {
-        bool low; /* there is no room for figures beside opened panels, with what follows */
+        bool low; /* the window has no room for figures beside its opened panels */
         unsigned open;
         uint32_t hud, width, height;
     } crowd;

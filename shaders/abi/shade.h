@@ -172,7 +172,7 @@ struct gpu_frame {
     gpu_uint slot_shift; /* where the pixel's slot starts in the state of a queued ray */
     gpu_float bailout_shadow; /* shadow rays that can add no more than this share of their light are
                                  not traced */
-    gpu_uint turns; /* 2, for a loop whose iterations compilers must not know: report_hooks() */
+    gpu_uint iterations; /* 2: of a loop whose length compilers must not know, in report_hooks() */
     gpu_vec3 scene_center; /* a sphere around all instances */
     gpu_float scene_radius;
 };

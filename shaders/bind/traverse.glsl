@@ -13,8 +13,8 @@ bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 
 // Defined by the kernel: the optical depth, in units of 1/64 stop, that a filter with
 // TRIANGLE_FILTER_DETAIL adds to a shadow ray that hits it from the front or from behind. `way`:
-// the distance from there to the filter_end of the ray. `own`: the depth in its record. A surface where the ray enters or leaves a medium may add a negative
-// depth; a sum below 0 counts as 0.
+// the distance from there to the filter_end of the ray. `own`: the depth in its record. A surface
+// where the ray enters or leaves a medium may add a negative depth; a sum below 0 counts as 0.
 ivec3 filter_detail(uint instance, uint primitive, float u, float v, float way, bool front,
                     ivec3 own);
 

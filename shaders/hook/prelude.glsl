@@ -49,11 +49,11 @@ void count_camera(uint before, bool of_use)
 // none, the driver may have ended loops of the user's before they were done (lib/turn.glsl).
 void report_hooks()
 {
-    uint turn = 0u;
+    uint iteration = 0u;
     bool more = false;
     do {
-        turn++;
-        more = turn < frame.turns;
+        iteration++;
+        more = iteration < frame.iterations;
     } while (another_iteration(more));
     if (more)
         report_status(STATUS_CUT_LOOPS);
