@@ -67,10 +67,11 @@ whit_result params_check(const whit_log *log, whit_renderer_params *params)
         params->width = 640;
         params->height = 480;
     }
-    if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
-        params->sampling.count = 4; /* the samples of the first pass */
-    else if (params->sampling.count == 0)
-        params->sampling.count = 1;
+    bool adaptive = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE;
+    if (params->sampling.count == 0)
+        params->sampling.count = adaptive ? SAMPLING_ADAPTIVE_FIRST : 1;
+    if (params->sampling.count_max == 0)
+        params->sampling.count_max = SAMPLING_ADAPTIVE_MAX;
     if (params->width == 0 || params->height == 0 || params->width > 65535 ||
         params->height > 65535) {
         log_error(log, "size %ux%u: both sides must be 1..65535", params->width, params->height);
@@ -117,7 +118,14 @@ whit_result params_check(const whit_log *log, whit_renderer_params *params)
         log_error(log, "tile size %u: must be %d..%d", params->tile_size, TILE_MIN, TILE_MAX);
         return WHIT_ERROR_USAGE;
     }
-    bool adaptive = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE;
+    if (adaptive &&
+        (!is_power_of_4(params->sampling.count) || !is_power_of_4(params->sampling.count_max) ||
+         params->sampling.count >= params->sampling.count_max ||
+         params->sampling.count_max > SAMPLING_ADAPTIVE_MAX)) {
+        log_error(log, "adaptive samples from %u to %u: must be powers of 4 from 1 up to %d",
+                  params->sampling.count, params->sampling.count_max, SAMPLING_ADAPTIVE_MAX);
+        return WHIT_ERROR_USAGE;
+    }
     if (adaptive && !(params->sampling.contrast > 0.0 && params->sampling.contrast <= 1.0)) {
         log_error(log, "adaptive contrast %g: must be above 0, up to 1", params->sampling.contrast);
         return WHIT_ERROR_USAGE;

@@ -10,6 +10,8 @@
    light sends. This cuts off highlights, which never fade to 0, far from their middle. */
 #define BAILOUT_SHADOW_SHARE 0x1p-14
 
+/* Samples of adaptive pictures, unless params say otherwise: of every pixel, and the most. */
+enum { SAMPLING_ADAPTIVE_FIRST = 4, SAMPLING_ADAPTIVE_MAX = 64 };
 enum { TILE_MIN = 16, TILE_MAX = 1024 }; /* sides of tiles, pixels */
 
 /* Fills in defaults. WHIT_ERROR_USAGE, logged, for what is out of range. */

@@ -47,7 +47,7 @@ uint32_t pixels_blocks_across(uint32_t pixels)
 
 uint32_t pixels_levels(const whit_renderer_params *params)
 {
-    uint32_t max = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? ADAPTIVE_MAX
+    uint32_t max = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? params->sampling.count_max
                                                                    : params->sampling.count,
              levels = 0;
     while ((max - 1) >> levels)

@@ -16,8 +16,6 @@
 #include "render/tiles.h"
 #include "render/views.h"
 
-enum { PROBE_ADAPTIVE_SAMPLES = 4 };
-
 #define DBG_HEAD  ((uint64_t)DBG_CALLS * sizeof(uint32_t))
 #define DBG_BYTES (DBG_HEAD + (uint64_t)DBG_CALLS * DBG_VALUES * sizeof(struct gpu_dbg))
 
@@ -392,9 +390,7 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
     *out = (struct probe_report){.x = x,
                                  .y = y,
                                  .light_samples = renderer->frame.light_samples,
-                                 .samples = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE
-                                                ? PROBE_ADAPTIVE_SAMPLES
-                                                : params->sampling.count};
+                                 .samples = params->sampling.count};
     whit_result result = views_leave(renderer);
     if (result == WHIT_OK)
         result = check(renderer, x, y);

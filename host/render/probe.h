@@ -37,7 +37,7 @@ struct probe_value {
 
 struct probe_report {
     uint32_t x, y;
-    uint32_t samples;       /* samples in `color`; adaptive: the 4 of the first pass */
+    uint32_t samples;       /* samples in `color`; adaptive: those of the first pass */
     uint32_t light_samples; /* samples of each light, see gpu_probe_ray.light_sample */
     float color[4];         /* colour of the pixel, as in the picture */
     /* The ray tree of the first sample, depth first: a ray is followed by its shadow rays, then by

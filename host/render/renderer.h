@@ -161,7 +161,7 @@ struct progress {
     uint32_t samples;               /* samples of a pixel in this pass */
     bool listed;                    /* draws only the pixels whose level asks for `samples` */
     bool aovs_alone;                /* draws aovs only; colours and ids stay */
-    uint8_t *levels;                /* by pixel: 1: 4 samples, 2: 16, 3: 64; NULL: not adaptive */
+    uint8_t *levels; /* by pixel: base-4 logarithm of its samples; NULL: not adaptive */
 };
 
 /* For params.compile_async: see async.c. */
@@ -256,7 +256,6 @@ enum { RENDER_GROUP_SIZE = 128, RENDER_BLOCK_PIXELS = 64 };
 /* Byte offsets of status_loop and status_shape in the status buffer (shaders/bind/trees.glsl). */
 enum { STATUS_LOOP_AT = 8, STATUS_SHAPE_AT = 12 };
 enum { READ_SLICE = 4096 }; /* pixels that are read back at once */
-enum { ADAPTIVE_MAX = 64 }; /* most samples of a pixel in an adaptive picture */
 
 /* Why there is nothing to read: renderer->rendered is false. */
 #define RENDER_NO_PICTURE                                                                          \

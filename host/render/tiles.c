@@ -334,8 +334,18 @@ whit_result render_pass(struct renderer *renderer, uint32_t samples, struct prog
     return result;
 }
 
-/* 4 samples for all pixels; then 16 for pixels that differ from a neighbour; then 64 for those that
-   still do. The comparison needs the whole picture, so each pass goes over all bands. */
+/* The base-4 logarithm of `samples`, rounded up. */
+static uint32_t log4_up(uint32_t samples)
+{
+    uint32_t level = 0;
+    while (1u << (2 * level) < samples)
+        ++level;
+    return level;
+}
+
+/* sampling.count samples for all pixels; then 4 times as many for pixels that differ from a
+   neighbour, and so on up to sampling.count_max. The comparison needs the whole picture, so each
+   pass goes over all bands. */
 static whit_result render_adaptive(struct renderer *renderer, struct progress *progress)
 {
     const whit_renderer_params *params = &renderer->params;
@@ -343,10 +353,12 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
     progress->levels = array_alloc(pixels, sizeof *progress->levels);
     if (!progress->levels)
         return render_no_memory(renderer, "the samples of pixels");
-    memset(progress->levels, 1, pixels);
-    progress->share = 1.0 / 3.0;
-    whit_result result = render_pass(renderer, 4, progress);
-    for (uint8_t level = 2; result == WHIT_OK && level <= 3; ++level) {
+    uint8_t first = (uint8_t)log4_up(params->sampling.count),
+            last = (uint8_t)log4_up(params->sampling.count_max);
+    memset(progress->levels, first, pixels);
+    progress->share = 1.0 / (last - first + 1);
+    whit_result result = render_pass(renderer, params->sampling.count, progress);
+    for (uint8_t level = first + 1; result == WHIT_OK && level <= last; ++level) {
         uint64_t marked =
             adaptive_mark(&renderer->color, params->sampling.contrast, level, progress->levels);
         renderer->picture.stats.rays_primary += marked << (2 * level);
@@ -371,10 +383,7 @@ static whit_result render_picture(struct renderer *renderer, struct progress *pr
     renderer->picture.stats.rays_primary = pixels * params->sampling.count;
     if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         return render_adaptive(renderer, progress);
-    uint32_t level = 0;
-    while (1u << (2 * level) < params->sampling.count)
-        ++level;
-    renderer->picture.stats.pixels_by_samples[level] = pixels;
+    renderer->picture.stats.pixels_by_samples[log4_up(params->sampling.count)] = pixels;
     if (steps_are_wanted(renderer))
         return steps_render(renderer, progress);
     return render_pass(renderer, params->sampling.count, progress);

@@ -397,10 +397,9 @@ static uint32_t choose_packet_rays(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
     const struct accel *accel = renderer->accel;
-    double samples =
-        params->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? 4.0 : (double)params->sampling.count;
     double lights = fmin((double)renderer->pose.light_count, (double)LIGHT_LISTS);
-    double rays = (double)params->width * views_picture_rows(renderer) * samples * (1.0 + lights);
+    double rays = (double)params->width * views_picture_rows(renderer) * params->sampling.count *
+                  (1.0 + lights);
     double halvings = same_log2((double)accel->record_count + 1.0) - PACKETS_HALVINGS;
     uint32_t chosen = 1;
     for (size_t i = 0; i < sizeof packet_choices / sizeof *packet_choices; ++i) {

@@ -343,13 +343,11 @@ enum { RAYS_FOR_MANY = 150000 };
 
 bool render_few_kernels(const whit_renderer_params *params)
 {
-    double samples = params->sampling.kind == WHIT_SAMPLING_ADAPTIVE
-                         ? 4.0
-                         : fmax((double)params->sampling.count, 1.0);
     if (params->classes != WHIT_CLASSES_AUTO)
         return params->classes == WHIT_CLASSES_ONE;
     return !params->many_pictures && !params->compile_async &&
-           (double)params->width * params->height * samples < RAYS_FOR_MANY;
+           (double)params->width * params->height * fmax((double)params->sampling.count, 1.0) <
+               RAYS_FOR_MANY;
 }
 
 bool variant_few_kernels(const struct target *target)

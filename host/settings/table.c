@@ -58,6 +58,21 @@ static const struct setting_value more_build[] = {{"binned+opt", 0, NULL}, {"bin
 
 /* ---- Kinds of their own ---- */
 
+/* Reads `,LEAST,MOST` of adaptive samples. */
+static bool read_limits(const char *text, whit_sampling *sampling)
+{
+    char expected[16];
+    for (sampling->count = 1; sampling->count < 64; sampling->count *= 4) {
+        for (sampling->count_max = 4 * sampling->count; sampling->count_max <= 64;
+             sampling->count_max *= 4) {
+            snprintf(expected, sizeof expected, ",%u,%u", sampling->count, sampling->count_max);
+            if (strcmp(text, expected) == 0)
+                return true;
+        }
+    }
+    return false;
+}
+
 static bool read_aa(const struct setting *row, const char *text, void *record, char *why)
 {
     static const char prefix[] = "adaptive:";
@@ -74,10 +89,17 @@ static bool read_aa(const struct setting *row, const char *text, void *record, c
         return true;
     }
     double contrast = strtod(text + length, &end);
-    if (end == text + length || *end || !(contrast > 0.0 && contrast <= 1.0))
+    if (end == text + length || (*end && *end != ',') || !(contrast > 0.0 && contrast <= 1.0))
         return setting_refuse(why, " `%s`: after adaptive: a number above 0, up to 1, is needed",
                               text);
-    picture->sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = contrast};
+    whit_sampling sampling = {
+        .kind = WHIT_SAMPLING_ADAPTIVE, .count = 4, .count_max = 64, .contrast = contrast};
+    if (*end && !read_limits(end, &sampling))
+        return setting_refuse(why,
+                              " `%s`: after a comma the least and the most samples of a pixel are "
+                              "needed: 1,4 1,16 1,64 4,16 4,64 or 16,64",
+                              text);
+    picture->sampling = sampling;
     return true;
 }
 
@@ -85,8 +107,11 @@ static bool write_aa(const void *record, char text[SETTING_VALUE_BYTES])
 {
     const whit_renderer_params *picture = &((const struct settings *)record)->picture;
     if (picture->sampling.kind == WHIT_SAMPLING_ADAPTIVE) {
+        const whit_sampling *sampling = &picture->sampling;
         strcpy(text, "adaptive:");
-        setting_write_number(picture->sampling.contrast, text + strlen(text), 40);
+        setting_write_number(sampling->contrast, text + strlen(text), 40);
+        if (sampling->count_max && (sampling->count != 4 || sampling->count_max != 64))
+            snprintf(text + strlen(text), 16, ",%u,%u", sampling->count, sampling->count_max);
     } else {
         snprintf(text, SETTING_VALUE_BYTES, "%u",
                  picture->sampling.count ? picture->sampling.count : 1);
@@ -245,10 +270,10 @@ const struct setting settings_table[] = {
     {"fps", 0, "F", "frames in a second, for --frame", AT(NUMBER, fps), .min = 1e-3, .max = 1e6,
      .commands = IN_SCENES},
 
-    {"aa", 0, "N|adaptive:X",
+    {"aa", 0, "N|adaptive:X[,LEAST,MOST]",
      "samples a pixel, 1 to 4096 (powers of 4 are spread evenly);\n"
-     "adaptive: 4, where neighbours differ by more than X 16,\n"
-     "and then 64",
+     "adaptive: LEAST (4), where neighbours differ by more than\n"
+     "X 4 times as many, and so on up to MOST (64)",
      AT_OWN(aa), .values = values_samples, .commands = IN_PICTURES | IN_SCENE,
      .change = SETTING_LIGHT, .always = true, .tells = aa_tells, .title = "anti-aliasing",
      .steps = steps_aa, .key = 'Y'},

@@ -7,7 +7,7 @@
 #include "view/palette.h"
 #include "whit/whit_program.h"
 
-enum { ADAPTIVE_SAMPLES = 8 }; /* expected; they are 4 and more */
+enum { ADAPTIVE_TIMES = 2 }; /* expected samples a pixel, as a multiple of the least */
 static const double BUDGET_DEFAULT_MS = 1000.0 / 30.0;
 /* A picture takes 1.0 to 1.4 times as long in steps (1280x720: 34k 1.4, default 1.15, whitted 1.03
    on an AMD EPYC, 1.3, 1.1 and 1.02 on a Xeon). One of up to AT_ONCE_MS is drawn without them,
@@ -23,9 +23,8 @@ static uint32_t samples_of(const struct settings *settings)
     const whit_renderer_params *p = &settings->picture;
     if (settings->paint != PAINT_COLOR)
         return 1;
-    return p->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? ADAPTIVE_SAMPLES
-           : p->sampling.count                        ? p->sampling.count
-                                                      : 1;
+    return (p->sampling.kind == WHIT_SAMPLING_ADAPTIVE ? ADAPTIVE_TIMES : 1) *
+           (p->sampling.count ? p->sampling.count : 1);
 }
 
 static double pixels_of(const struct settings *settings)
@@ -35,7 +34,7 @@ static double pixels_of(const struct settings *settings)
 
 void engine_note_time(struct engine_lane *lane, const struct engine_frame *frame)
 {
-    double samples = frame->samples > 0 ? frame->samples : ADAPTIVE_SAMPLES;
+    double samples = frame->samples > 0 ? frame->samples : samples_of(&frame->settings);
     pace_note(&lane->pace, frame->divisor, frame->moving,
               frame->draw_ms / (samples * pixels_of(&frame->settings)));
 }

@@ -97,7 +97,7 @@ typedef struct whit_probe_call {
 
 typedef struct whit_probe_report {
     uint32_t x, y;
-    uint32_t samples; /* the number that `color` is the mean of; for an adaptive picture the 4 of
+    uint32_t samples; /* the number that `color` is the mean of; for an adaptive picture those of
                          its first pass */
     float color[4];   /* as in the picture: the same bytes */
     uint8_t shown[4]; /* as displayed: sRGB */

@@ -40,15 +40,16 @@ typedef enum whit_shadows {
 /* The samples of the sequence that each pixel gets. */
 typedef enum whit_sampling_kind {
     WHIT_SAMPLING_FIXED = 0, /* `count` samples from `first` on */
-    WHIT_SAMPLING_ADAPTIVE,  /* 4 samples; 16 where a pixel then differs from a neighbour by more
-                                than `contrast`, and 64 where it still does */
+    WHIT_SAMPLING_ADAPTIVE,  /* `count` samples; where a pixel then differs from a neighbour by more
+                                than `contrast` 4 times as many, and so on up to `count_max` */
 } whit_sampling_kind;
 typedef struct whit_sampling {
     whit_sampling_kind kind;
-    uint32_t count;  /* FIXED: up to WHIT_SAMPLES_MAX; powers of 4 are the most evenly spread; 0:
-                        1 */
-    uint32_t first;  /* FIXED: a multiple of `count`; hit identities exist for sample 0 only */
-    double contrast; /* ADAPTIVE: above 0, up to 1 */
+    uint32_t count;     /* FIXED: up to WHIT_SAMPLES_MAX; powers of 4 are the most evenly spread; 0:
+                           1. ADAPTIVE: 1, 4 or 16; 0: 4 */
+    uint32_t first;     /* FIXED: a multiple of `count`; hit identities exist for sample 0 only */
+    uint32_t count_max; /* ADAPTIVE: 4, 16 or 64, above `count`; 0: 64 */
+    double contrast;    /* ADAPTIVE: above 0, up to 1, of what is displayed, linear */
 } whit_sampling;
 
 /* The sampling of textures for a pixel that covers many texels. */

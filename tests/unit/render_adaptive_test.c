@@ -1,5 +1,6 @@
-/* Adaptive anti-aliasing: every pixel is that of the picture of 4, 16 or 64 samples, bit for bit,
-   by the rule of docs/effects.md. This file has a second, simple implementation of the rule. */
+/* Adaptive anti-aliasing: every pixel is that of the picture of 1, 4, 16 or 64 samples, bit for
+   bit, by the rule of docs/effects.md. This file has a second, simple implementation of the rule.
+ */
 #include "render/adaptive_samples.h"
 #include "render_scenes.h"
 #include "unit.h"
@@ -29,7 +30,7 @@ static bool differs(const float *pixels, int x, int y, float contrast)
 }
 
 /* The expected picture. `min`, `max`: limits of the numbers of other rays than camera rays: at
-   least those of 4 samples; at most those of each level that has pixels, for all pixels. */
+   least those of the first pass; at most those of each level that has pixels, for all pixels. */
 struct expected {
     float pixels[PIXELS][4];
     uint64_t by_samples[4], primary;
@@ -48,15 +49,19 @@ static void check_between(uint64_t min, uint64_t rays, uint64_t max)
     assert_true(min <= rays && rays <= max);
 }
 
-/* Makes the expected picture from those of 4, 16 and 64 samples. */
-static void expect(const struct picture plain[3], float contrast, struct expected *e)
+/* Makes the expected picture from those of 1, 4, 16 and 64 samples: `first` and `last` are the
+   indices of the least and the most. */
+static void expect(const struct picture plain[4], uint32_t first, uint32_t last, float contrast,
+                   struct expected *e)
 {
-    uint32_t level_of[PIXELS] = {0};
+    uint32_t level_of[PIXELS];
     memset(e, 0, sizeof *e);
-    memcpy(e->pixels, plain[0].color.pixels, sizeof e->pixels);
-    e->primary = 4 * PIXELS;
-    e->min = e->max = plain[0].stats;
-    for (uint32_t level = 1; level < 3; ++level) {
+    memcpy(e->pixels, plain[first].color.pixels, sizeof e->pixels);
+    for (int i = 0; i < PIXELS; ++i)
+        level_of[i] = first;
+    e->primary = (1u << (2 * first)) * PIXELS;
+    e->min = e->max = plain[first].stats;
+    for (uint32_t level = first + 1; level <= last; ++level) {
         bool marked[PIXELS], some = false;
         for (int i = 0; i < PIXELS; ++i)
             marked[i] = differs(&e->pixels[0][0], i % WIDTH, i / WIDTH, contrast);
@@ -65,14 +70,14 @@ static void expect(const struct picture plain[3], float contrast, struct expecte
                 continue;
             level_of[i] = level;
             memcpy(e->pixels[i], &plain[level].color.pixels[4 * i], sizeof e->pixels[i]);
-            e->primary += level == 1 ? 16 : 64;
+            e->primary += 1u << (2 * level);
             some = true;
         }
         if (some)
             add_rays(&e->max, &plain[level].stats);
     }
     for (int i = 0; i < PIXELS; ++i)
-        ++e->by_samples[1 + level_of[i]];
+        ++e->by_samples[level_of[i]];
 }
 
 static void check(struct fixture *f, const struct picture *first, const struct expected *e)
@@ -87,24 +92,38 @@ static void check(struct fixture *f, const struct picture *first, const struct e
     check_between(e->min.rays_refracted, p.stats.rays_refracted, e->max.rays_refracted);
 }
 
-/* Draws pictures of 4, 16 and 64 samples, and compares them with adaptive ones in tiles and bands
-   of several sizes. */
+/* 1: nothing differs by more, so all pixels keep 4. */
+static const double contrasts[] = {0.05, 1.0};
+
+/* Draws pictures of 1, 4, 16 and 64 samples, and compares them with adaptive ones in tiles and
+   bands of several sizes. The first contrast is tried with other limits of samples too. */
 static void check_scene(struct scene *scene, const whit_accel_params *accel,
-                        const whit_camera *camera, const double *contrasts, int contrast_count)
+                        const whit_camera *camera, int contrast_count)
 {
     whit_renderer_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3, .camera = *camera};
     static struct expected e;
-    struct picture plain[3];
+    struct picture plain[4];
     own_fixture f = fixture_open(scene, accel, &params);
-    for (int i = 0; i < 3; ++i) {
-        params.sampling.count = 4u << (2 * i);
+    for (int i = 0; i < 4; ++i) {
+        params.sampling.count = 1u << (2 * i);
         fixture_renew(&f, &params);
         plain[i] = render_picture(&f);
-        assert_int_equal(plain[i].stats.pixels_by_samples[i + 1], PIXELS);
+        assert_int_equal(plain[i].stats.pixels_by_samples[i], PIXELS);
+    }
+    static const uint32_t limits[][2] = {{0, 1}, {0, 3}, {2, 3}, {1, 2}};
+    for (int i = 0; i < 4; ++i) {
+        params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE,
+                                          .count = 1u << (2 * limits[i][0]),
+                                          .count_max = 1u << (2 * limits[i][1]),
+                                          .contrast = contrasts[0]};
+        expect(plain, limits[i][0], limits[i][1], (float)contrasts[0], &e);
+        assert_true(e.by_samples[limits[i][0]] > 0 && e.by_samples[limits[i][1]] > 0);
+        assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
+        check(&f, &plain[limits[i][0]], &e);
     }
     for (int i = 0; i < contrast_count; ++i) {
         params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = contrasts[i]};
-        expect(plain, (float)contrasts[i], &e);
+        expect(plain, 1, 3, (float)contrasts[i], &e);
         print_message("  contrast %g: %u, %u and %u pixels of 4, 16 and 64\n", contrasts[i],
                       (unsigned)e.by_samples[1], (unsigned)e.by_samples[2],
                       (unsigned)e.by_samples[3]);
@@ -114,26 +133,23 @@ static void check_scene(struct scene *scene, const whit_accel_params *accel,
             fixture_renew(&f, &params);
             if (bands[k])
                 f.renderer->picture.buffers.band_rows = bands[k];
-            check(&f, &plain[0], &e);
+            check(&f, &plain[1], &e);
         }
         params.tile_size = 0;
     }
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 4; ++i)
         picture_finish(&plain[i]);
 }
 
-/* 1: nothing differs by more, so all pixels keep 4. */
-static const double contrasts[] = {0.05, 1.0};
-
 TEST(pixels_are_those_of_plain_pictures)
 {
-    check_scene(glass_scene(), NULL, &glass_camera, contrasts, 2);
+    check_scene(glass_scene(), NULL, &glass_camera, 2);
 }
 
 TEST_BY_TURNS(so_they_are_without_trees, 0, 2)
 {
     const whit_accel_params no_trees = {.build = WHIT_BUILD_NONE};
-    check_scene(glass_scene_of(1, 3), &no_trees, &glass_camera, contrasts, 1);
+    check_scene(glass_scene_of(1, 3), &no_trees, &glass_camera, 1);
 }
 
 TEST_BY_TURNS(lens_and_plain_scenes_too, 1, 2)
@@ -141,7 +157,7 @@ TEST_BY_TURNS(lens_and_plain_scenes_too, 1, 2)
     struct scene *scene = terrain_scene();
     scene_put_camera(scene, (double[]){0, 4, 9}, (double[]){0, 0, 0}, 0.7);
     scene->cameras[0].lens_radius = 0.4f;
-    check_scene(scene, NULL, &(whit_camera){.name = NULL}, contrasts, 1);
+    check_scene(scene, NULL, &(whit_camera){.name = NULL}, 1);
 }
 
 TEST(marks_come_in_pairs)
@@ -206,6 +222,10 @@ TEST(nonsense_is_refused)
         {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = -0.5}},
         {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 1.5}},
         {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = NAN}},
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.5, .count = 2}},
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.5, .count = 64}},
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.5, .count_max = 8}},
+        {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.5, .count_max = 256}},
         {.sampling = {.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1}, .count = true}};
     own_fixture f = fixture_open(terrain_scene(), NULL, NULL);
     fixture_refuses(&f, wrong, sizeof wrong / sizeof *wrong);

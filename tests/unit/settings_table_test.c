@@ -171,6 +171,31 @@ TEST(each_kind_of_text_that_is_none_is_refused)
     }
 }
 
+TEST(limits_of_adaptive_samples_are_powers_of_4)
+{
+    static const char *const texts[] = {"adaptive:0.05,1,4",   "adaptive:0.05,1,16",
+                                        "adaptive:0.05,1,64",  "adaptive:0.05,4,16",
+                                        "adaptive:0.05,16,64", "adaptive:0.05"};
+    static const char *const refused[] = {"adaptive:0.05,",     "adaptive:0.05,1",
+                                          "adaptive:0.05,4,4",  "adaptive:0.05,2,8",
+                                          "adaptive:0.05,1,4,", "adaptive:0.05,16,256"};
+    const struct setting *aa = settings_row("aa");
+    char text[SETTING_VALUE_BYTES], why[SETTING_WHY_BYTES];
+    struct settings settings = settings_usual();
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; ++i) {
+        assert_true(settings_read(aa, texts[i], &settings, why));
+        assert_true(setting_write(aa, &settings, 0, text));
+        assert_string_equal(text, texts[i]);
+    }
+    assert_true(settings_read(aa, "adaptive:0.05,4,64", &settings, why));
+    assert_true(setting_write(aa, &settings, 0, text));
+    assert_string_equal(text, "adaptive:0.05");
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
+        assert_false(settings_read(aa, refused[i], &settings, why));
+        assert_non_null(strstr(why, "1,4 1,16 1,64 4,16 4,64 or 16,64"));
+    }
+}
+
 static void print_row(const struct setting *row)
 {
     char text[SETTING_VALUE_BYTES];

@@ -76,7 +76,7 @@ def _struct(name, *members):
 Log = _struct("whit_log", ("fn", _LogFn), ("user", c_void_p), ("level", LogLevel))
 Camera = _struct("whit_camera", ("name", c_char_p), ("own", c_bool), ("kind", CameraKind),
                  ("eye target up", c_double * 3), ("fov_y_degrees height lens_radius focus_distance", c_double))
-Sampling = _struct("whit_sampling", ("kind", SamplingKind), ("count first", c_uint32), ("contrast", c_double))
+Sampling = _struct("whit_sampling", ("kind", SamplingKind), ("count first count_max", c_uint32), ("contrast", c_double))
 LoadParams = _struct(
     "whit_load_params", ("up", Up), ("lights", Lights), ("environment", c_char_p), ("has_background", c_bool),
     ("background", c_uint8 * 3), ("import_limit_s time_limit_s", c_double), ("require_sandbox", c_bool),

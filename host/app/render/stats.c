@@ -334,7 +334,8 @@ static void print_stages(const struct job *job, const struct figures *figures)
 static void print_samples(const struct figures *figures)
 {
     const uint64_t *pixels = figures->render->pixels_by_samples;
-    printf("pixels\n  of 4 samples %llu, of 16 %llu, of 64 %llu\n", (unsigned long long)pixels[1],
+    printf("pixels\n  of 1 sample %llu, of 4 %llu, of 16 %llu, of 64 %llu\n",
+           (unsigned long long)pixels[0], (unsigned long long)pixels[1],
            (unsigned long long)pixels[2], (unsigned long long)pixels[3]);
 }
 
