@@ -247,6 +247,11 @@ void cost_choice_apply(const struct cost_choice *choice, struct settings *settin
     }
     if (choice->samples > 0)
         settings->picture.sampling = (whit_sampling){.count = choice->samples};
+    if (choice->contrast > 0.0)
+        settings->picture.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE,
+                                                     .count = choice->samples,
+                                                     .count_max = 4 * choice->samples,
+                                                     .contrast = choice->contrast};
     if (choice->bailout > 0.0)
         settings->picture.bailout = choice->bailout;
 }

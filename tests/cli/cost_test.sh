@@ -157,14 +157,16 @@ if part 1 2; then
 fi
 
 if [ "${4:-}" = all ]; then
-    # A sample takes 135 ms and bounces take nothing. So whit chooses the most bounces, and six samples: six take less
-    # than nine tenths of 1000 ms, seven take more.
+    # A sample takes 135 ms and bounces take nothing. So whit chooses the most bounces, and 4 samples: 16 would take
+    # longer than nine tenths of 1000 ms. What is left goes to edges.
     most=" --depth 16 --bailout 0"
     tiny="$GLASS --size 48x36 -o $OUT/chosen.png --budget-ms 1000"
+    predicted() { sed -n 's/^whit: note: chosen: .*; predicted: \([0-9.]*\) ms.*/\1/p' "$OUT/stderr"; }
     kept="kept with the scene; --fresh measures anew"
     expect 0 "what is left of the time goes to samples" render $tiny
     first=$(chosen)
-    check "six of them ($first)" test "$first" = "--aa 6$most"
+    check "four, and sixteen at edges ($first)" expr "$first" : "--aa adaptive:[0-9.]*,4,16$most\$"
+    check "most of it ($(predicted))" holds "$(predicted) >= 700 && $(predicted) <= 900"
     check "it was measured" grep -q "measuring what settings cost" "$OUT/stderr"
     # The second run makes the same choice, even if it is slower.
     export WHIT_TEST_WRONG=noisy
@@ -174,9 +176,17 @@ if [ "${4:-}" = all ]; then
     check "and says by which figures" grep -q "^whit: note: by figures of 20.* UTC, $kept" "$OUT/stderr"
     check "it is not measured again" test "$(grep -c "measuring" "$OUT/stderr")" -eq 0
     expect 0 "another time, by the same figures" render $tiny --budget-ms 1400
-    check "gets its own choice ($(chosen))" test "$(chosen)" = "--aa 9$most"
+    check "gets its own choice ($(chosen))" expr "$(chosen)" : "--aa adaptive:[0-9.]*,4,16$most\$"
+    check "of more edges" test "$(chosen)" != "$first"
     expect 0 "and the first one again" render $tiny
     check "its own" test "$(chosen)" = "$first"
+    # One sample takes 135 of 250 ms, and two take too long: edges get four.
+    expect 0 "a time between one sample and two" render $tiny --budget-ms 250
+    edges=$(chosen)
+    check "goes to edges ($edges)" expr "$edges" : "--aa adaptive:[0-9.]*,1,4$most\$"
+    check "most of it ($(predicted))" holds "$(predicted) >= 175 && $(predicted) <= 225"
+    expect 0 "the same time again" render $tiny --budget-ms 250
+    check "gets the same edges" test "$(chosen)" = "$edges"
 
     # By the slowest of ten pictures no choice is predicted to take at most 150 ms, but the usual settings do.
     export WHIT_TEST_WRONG=noisy

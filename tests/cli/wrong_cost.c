@@ -57,10 +57,10 @@ WRAPPED(whit_result, whit_renderer_render, whit_renderer *renderer)
     const whit_renderer_params *params = &renderer->renderer->params;
     bool slow = (is_wrong("slow") && params->depth >= 16) ||
                 (is_wrong("triangle") && by_medians(renderer->accel));
-    double samples = (double)params->width * params->height * params->sampling.count;
     turned_ms += is_wrong("compile") ? 1e6 : 0.0;
     double start_ms = whit_clock_cpu_ms();
     whit_result result = __real_whit_renderer_render(renderer);
+    double samples = (double)renderer->renderer->picture.stats.rays_primary;
     static uint32_t pictures;
     bool late = is_wrong("noisy") && ++pictures % 5 == 0;
     turned_ms += samples * (late ? 3.0 : 1.0) * (SAMPLE_MS + (slow ? TENTH_MS : 0.0));

@@ -7,7 +7,9 @@
 #include "app/cost/cost_choice.h"
 #include "app/cost/cost_kept.h"
 
-enum { SAMPLES = 16, TRIALS = 5, TRIES = 6 };
+enum { SAMPLES = 16, TRIALS = 5, TRIES = 6, EDGE_TRIES = 3, EDGE_SAMPLES_MAX = 64 };
+/* Smaller differences of neighbours are not visible. */
+static const double CONTRAST_MIN = 1.0 / 256.0;
 /* Shorter trials mostly measure what else the processor was doing. */
 static const double TRIAL_MS_MIN = 50.0;
 /* No further choice is tried once one takes this share of the budget. */
@@ -154,7 +156,7 @@ static whit_result try_now(const struct choosing *choosing, const struct cost_ch
 
 static bool is_same(const struct cost_choice *a, const struct cost_choice *b)
 {
-    return a->samples == b->samples && a->bailout == b->bailout &&
+    return a->samples == b->samples && a->contrast == b->contrast && a->bailout == b->bailout &&
            memcmp(a->settings, b->settings, sizeof a->settings) == 0;
 }
 
@@ -190,6 +192,127 @@ static whit_result find_within(const struct choosing *choosing, struct cost_kept
     return result;
 }
 
+/* ---- Smooth edges for what is left of a time ---- */
+
+static int compare_floats(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static float displayed(float value)
+{
+    return fminf(fmaxf(value, 0.0f), 1.0f);
+}
+
+/* The largest difference of the pixel to a neighbour, in any channel, as sampling.contrast means
+   it. */
+static float contrast_of(const whit_image *image, const whit_image_info *info, uint32_t x,
+                         uint32_t y)
+{
+    const float *pixels = whit_image_floats(image);
+    float largest = 0.0f;
+    uint32_t right = x + 1 < info->width ? x + 1 : x, below = y + 1 < info->height ? y + 1 : y;
+    for (uint32_t v = y > 0 ? y - 1 : 0; v <= below; ++v) {
+        for (uint32_t u = x > 0 ? x - 1 : 0; u <= right; ++u) {
+            for (uint32_t c = 0; c < 3; ++c) {
+                float own = pixels[((size_t)y * info->width + x) * info->channels + c],
+                      other = pixels[((size_t)v * info->width + u) * info->channels + c];
+                largest = fmaxf(largest, fabsf(displayed(own) - displayed(other)));
+            }
+        }
+    }
+    return largest;
+}
+
+/* Gives the contrasts of all pixels of the renderer's picture, in rising order. *out is the
+   caller's. */
+static whit_result sort_contrasts(whit_renderer *renderer, float **out, size_t *count)
+{
+    whit_image *image = NULL;
+    whit_image_info info;
+    whit_result result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
+    if (result != WHIT_OK)
+        return result;
+    whit_image_get_info(image, &info);
+    *count = (size_t)info.width * info.height;
+    *out = malloc(*count * sizeof **out);
+    for (size_t i = 0; *out && i < *count; ++i)
+        (*out)[i] =
+            contrast_of(image, &info, (uint32_t)(i % info.width), (uint32_t)(i / info.width));
+    whit_image_destroy(image);
+    if (!*out)
+        return cli_no_memory();
+    qsort(*out, *count, sizeof **out, compare_floats);
+    return WHIT_OK;
+}
+
+static whit_result time_whole(const struct choosing *choosing, double *ms)
+{
+    enum { ROUNDS = 2 };
+    const whit_renderer_params picture = job_picture(choosing->job);
+    struct cost_times times;
+    whit_result result = cost_time(*choosing->renderer, &picture, ROUNDS, &times);
+    *ms = times.ms[COST_WALL].high;
+    return result;
+}
+
+static uint32_t power_of_4_below(uint32_t samples)
+{
+    uint32_t power = 1;
+    while (4 * power <= samples)
+        power *= 4;
+    return power;
+}
+
+/* Whether samples at edges would be a better use of the time: numbers of samples between powers of
+   4 are not spread evenly (a textured scene under a map, 160x120: 2 samples have an RMSE of 0.068,
+   5 of 0.032, 1 to 4 of 0.029, 4 to 16 of 0.009). */
+static bool edges_pay(const struct cost_kept_choice *choice)
+{
+    uint32_t samples = choice->choice.samples;
+    return samples < EDGE_SAMPLES_MAX &&
+           (power_of_4_below(samples) != samples || choice->tried_ms < ENOUGH * choice->budget_ms);
+}
+
+/* Goes down to a power of 4 of samples a pixel, and spends what is left of the time on 4 times as
+   many samples at the strongest edges. Whole pictures are tried, since the share of edges depends
+   on the size. */
+static whit_result smooth_edges(const struct choosing *choosing, struct cost_kept_choice *best)
+{
+    const double budget_ms = best->budget_ms, aim_ms = COST_ROOM * budget_ms;
+    struct cost_kept_choice tried = *best;
+    float *contrasts = NULL;
+    double least_ms = 0.0;
+    size_t count = 0;
+    tried.choice.samples = power_of_4_below(best->choice.samples);
+    whit_result result = set_choice(choosing, &tried.choice);
+    if (result == WHIT_OK)
+        result = time_whole(choosing, &least_ms);
+    if (result == WHIT_OK)
+        result = sort_contrasts(*choosing->renderer, &contrasts, &count);
+    double share = (0.95 * aim_ms / least_ms - 1.0) / 3.0;
+    for (int i = 0; result == WHIT_OK && share > 0.0 && i < EDGE_TRIES; ++i) {
+        size_t at = count - (size_t)fmin(share * (double)count, (double)(count - 1)) - 1;
+        tried.choice.contrast = ceil(fmax(contrasts[at], CONTRAST_MIN) * 1e3) / 1e3;
+        result = set_choice(choosing, &tried.choice);
+        if (result == WHIT_OK)
+            result = time_whole(choosing, &tried.tried_ms);
+        if (result != WHIT_OK || tried.tried_ms <= least_ms)
+            break;
+        if (tried.tried_ms <= aim_ms &&
+            (best->choice.contrast == 0.0 || tried.tried_ms > best->tried_ms))
+            *best = tried;
+        if (tried.tried_ms <= aim_ms && tried.tried_ms >= ENOUGH * budget_ms)
+            break;
+        share *= (0.95 * aim_ms - least_ms) / (tried.tried_ms - least_ms);
+    }
+    free(contrasts);
+    if (result == WHIT_OK && !is_same(&best->choice, &tried.choice))
+        result = set_choice(choosing, &best->choice);
+    return result;
+}
+
 static whit_result choose_within(const struct choosing *choosing, struct cost_kept *kept,
                                  const char *name)
 {
@@ -201,6 +324,8 @@ static whit_result choose_within(const struct choosing *choosing, struct cost_ke
         result = set_choice(choosing, &found.choice);
     } else {
         result = find_within(choosing, &found);
+        if (result == WHIT_OK && edges_pay(&found))
+            result = smooth_edges(choosing, &found);
     }
     if (result != WHIT_OK)
         return result;

@@ -10,7 +10,7 @@
 #include "app/cost/cost_kept.h"
 #include "base/store.h"
 
-enum { KEPT_VERSION = 5 };
+enum { KEPT_VERSION = 6 };
 
 /* The name is a hash of everything that decides pixels or time, except the settings that are
    chosen. */
@@ -64,6 +64,7 @@ static json_t *choice_document(const struct cost_kept_choice *kept)
     document_number(out, "predicted_ms", kept->choice.ms);
     document_number(out, "predicted_error", kept->choice.error);
     document_count(out, "samples", kept->choice.samples);
+    document_number(out, "contrast", kept->choice.contrast);
     document_number(out, "bailout", kept->choice.bailout);
     json_t *settings = document_child(out, "settings");
     for (uint32_t k = 0; k < count; ++k)
@@ -108,9 +109,11 @@ static bool read_choice(const json_t *object, struct cost_kept_choice *kept)
         kept->choice.settings[k] = (uint8_t)s;
     }
     kept->choice.samples = (uint32_t)samples;
+    kept->choice.contrast = json_number_value(json_object_get(object, "contrast"));
     kept->choice.bailout = json_number_value(json_object_get(object, "bailout"));
     kept->choice.found = true;
-    return kept->budget_ms > 0.0 && samples >= 1 && samples <= WHIT_SAMPLES_MAX;
+    return kept->budget_ms > 0.0 && kept->choice.contrast >= 0.0 && kept->choice.contrast <= 1.0 &&
+           samples >= 1 && samples <= WHIT_SAMPLES_MAX;
 }
 
 /* Takes over `root`. */
@@ -160,6 +163,7 @@ bool cost_kept_load_figures(const struct cost_place *place, struct cost_kept_fig
         memcpy(figures->made, kept->made, sizeof figures->made);
         if (choice) {
             figures->choice = choice->choice;
+            figures->choice.contrast = 0.0; /* the window refines pictures of fixed samples alone */
             figures->choice_ms = choice->tried_ms;
         }
     }
