@@ -183,10 +183,18 @@ static void put_command(FILE *to, const struct cli_command *command)
     fputs(".SH SEE ALSO\n.BR whit (1)\n", to);
 }
 
+const char *const describe_file =
+    "A scene or model alone is shown where there is a display, and rendered to a .png where there\n"
+    "is none.\n";
+
 static void put_program(FILE *to, const struct cli_command *const *commands, uint32_t count)
 {
     put_head(to, "whit", "a Whitted ray tracer on Vulkan compute");
-    fputs(".B whit\nCOMMAND [options]\n.SH COMMANDS\n", to);
+    fputs(".B whit\nCOMMAND [options]\n.br\n.B whit\nFILE [options]\n.SH DESCRIPTION\n", to);
+    put_text(to, describe_file);
+    fputs("A command or option that is not known, bad input and output that cannot be written end "
+          "with exit code 2;\nall exit codes are in docs/cli.md.\n.SH COMMANDS\n",
+          to);
     for (uint32_t i = 0; i < count; ++i) {
         fprintf(to, ".TP\n.BR whit\\-%s (1)\n", commands[i]->name);
         put_text(to, commands[i]->summary);

@@ -13,6 +13,8 @@ int describe_complete(const struct cli_command *const *commands, uint32_t count,
 /* Prints the options of all commands as a table of Markdown, for docs/cli.md. */
 int describe_table(const struct cli_command *const *commands, uint32_t count);
 /* Writes whit.1 and a page for each command, whit-COMMAND.1, into an existing folder. */
+/* What `whit FILE` does, in two lines. */
+extern const char *const describe_file;
 int describe_manual(const struct cli_command *const *commands, uint32_t count, const char *folder);
 
 #endif

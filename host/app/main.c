@@ -27,12 +27,11 @@ static void print_usage(FILE *to)
           to);
     for (uint32_t i = 0; i < COMMAND_COUNT; ++i)
         fprintf(to, "  %-9s %s\n", commands[i]->name, commands[i]->summary);
-    fputs(
-        "\nA scene or model alone is shown where there is a display, and rendered to a .png where "
-        "there\nis none.\n\noptions:\n"
-        "  -h, --help     print this help; `whit COMMAND --help` explains a command\n"
-        "      --version  print the version\n",
-        to);
+    fprintf(to,
+            "\n%s\noptions:\n"
+            "  -h, --help     print this help; `whit COMMAND --help` explains a command\n"
+            "      --version  print the version\n",
+            describe_file);
 }
 
 static const struct cli_command *find_command(const char *name)

@@ -41,8 +41,9 @@ static bool is_off(void)
     return value && *value && strcmp(value, "0") != 0;
 }
 
-/* Makes the folder and its parent. Failures show when it is opened. */
-static char *make_folder(void)
+/* Makes the folder and its parent. *error: why the parent could not be made, or 0; other failures
+   show when the folder is opened. */
+static char *make_folder(int *error)
 {
     const char *xdg = getenv("XDG_CACHE_HOME");
     const char *home = getenv("HOME");
@@ -53,7 +54,7 @@ static char *make_folder(void)
         parent = string_format("%s/.cache", home);
     char *folder = parent ? string_format("%s/whit", parent) : NULL;
     if (folder && !is_off()) {
-        (void)mkdir(parent, 0700);
+        *error = mkdir(parent, 0700) != 0 && errno != EEXIST ? errno : 0;
         (void)mkdir(folder, 0700);
     }
     free(parent);
@@ -74,15 +75,18 @@ static const char *distrust(int fd)
     return NULL;
 }
 
-/* Opens the folder: a descriptor, or -1 with *why. */
-static int open_folder(const whit_log *log, const char *path, const char **why)
+/* Makes and opens the folder: a descriptor, or -1 with *why. *out, its path, which may be NULL, is
+   the caller's. */
+static int open_folder(const whit_log *log, char **out, const char **why)
 {
     static atomic_flag warned = ATOMIC_FLAG_INIT;
+    int error = 0;
+    const char *path = *out = make_folder(&error);
     *why = is_off() ? "WHIT_NO_CACHE is set" : "neither XDG_CACHE_HOME nor HOME names a folder";
     if (is_off() || !path)
         return -1;
     int fd = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    *why = fd < 0 ? strerror(errno) : distrust(fd);
+    *why = fd < 0 ? strerror(error ? error : errno) : distrust(fd);
     if (fd < 0) {
         log_debug(log, "%s: %s: nothing is kept", path, *why);
     } else if (*why) {
@@ -97,8 +101,8 @@ static int open_folder(const whit_log *log, const char *path, const char **why)
 static int open_own(const whit_log *log)
 {
     const char *why;
-    char *path = make_folder();
-    int fd = open_folder(log, path, &why);
+    char *path;
+    int fd = open_folder(log, &path, &why);
     free(path);
     return fd;
 }
@@ -106,8 +110,8 @@ static int open_own(const whit_log *log)
 char *store_folder(const whit_log *log)
 {
     const char *why;
-    char *path = make_folder();
-    int fd = open_folder(log, path, &why);
+    char *path;
+    int fd = open_folder(log, &path, &why);
     if (fd >= 0) {
         close(fd);
         return path;
@@ -304,8 +308,8 @@ void store_get_info(struct store_info *info)
     const whit_log silent = {0};
     const char *why;
     *info = (struct store_info){.limit_bytes = limit_bytes()};
-    char *path = make_folder();
-    int folder = open_folder(&silent, path, &why);
+    char *path;
+    int folder = open_folder(&silent, &path, &why);
     snprintf(info->folder, sizeof info->folder, "%s", path ? path : "");
     snprintf(info->why_not, sizeof info->why_not, "%s", folder < 0 ? why : "");
     if (folder >= 0) {

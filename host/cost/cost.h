@@ -172,8 +172,8 @@ double cost_error_of(const whit_difference *difference, enum cost_metric metric)
 struct cost_choice {
     uint8_t settings[COST_CHOICE_KNOBS]; /* by index in knob_table: index of the knob's setting */
     uint32_t samples;                    /* per pixel; 0: as the setting of knob `aa` says */
-    double contrast; /* above 0: adaptive by it: 4 times as many samples at edges */
-    double bailout;  /* 0: as the setting of knob `bailout` says */
+    double contrast;  /* above 0: adaptive by it: 4 times as many samples at edges */
+    double bailout;   /* 0: as the setting of knob `bailout` says */
     double ms, error; /* predicted: wall clock at full size; by the goal's metric */
     bool found;
 };

@@ -401,8 +401,8 @@ const struct setting settings_table[] = {
      .max = 15, .commands = IN_TREES, .change = SETTING_COST, .need = SETTING_NEEDS_TREES},
     {"instances", 0, NULL,
      "off: one tree over the triangles of all instances, placed\n"
-     "in the world; auto: where nothing moves and no mesh but a\n"
-     "single ball is there twice",
+     "in the world; auto: off where nothing moves and no mesh is\n"
+     "placed twice, single balls aside",
      AT(CHOICE, trees.instances), .values = values_instances, .commands = IN_TREES | IN_HARD,
      .change = SETTING_HITS, .need = SETTING_NEEDS_TREES, .title = "instance tree", .key = 'O'},
     {"instance-build", 0, NULL, "how the tree over instances is built",
@@ -430,8 +430,8 @@ const struct setting settings_table[] = {
      .commands = IN_RENDER | IN_PROBE | IN_TRACE | IN_HARD},
 
     {"up", 0, NULL,
-     "the axis of a model that points up, after an axis that its\n"
-     "format or file states was turned to y; auto: y, and of\n"
+     "the axis of a model that points up, once an axis that its\n"
+     "format or file states has become y; auto: y, and of\n"
      "OBJ, PLY and STL as their shape says; trace, bvh, hard and\n"
      "--triangles take it as it is unless told",
      AT(CHOICE, load.up), .values = values_up, .commands = IN_SCENES, .change = SETTING_HITS,
@@ -465,10 +465,10 @@ const struct setting settings_table[] = {
     {"import-limit", 0, "S",
      "seconds of the processor for each file that foreign code\n"
      "reads; ten times that by the clock",
-     "by its size, 8 to 60", AT(NUMBER, load.import_limit_s), .min = 1e-3, .max = 1e6,
+     "8 to 60, by the file's size", AT(NUMBER, load.import_limit_s), .min = 1e-3, .max = 1e6,
      .commands = IN_SCENES | IN_COMPARE | IN_MERGE, .trusted = true},
     {"require-sandbox", 0, NULL,
-     "fail where such code cannot be locked in, in place of a\n"
+     "fail where foreign code cannot be locked in, in place of a\n"
      "warning",
      AT(FLAG, load.require_sandbox), .commands = IN_SCENES | IN_COMPARE | IN_MERGE | IN_CHECK,
      .trusted = true},

@@ -136,6 +136,9 @@ if $plain test ! -w read-only 2>/dev/null; then
         check "$file: says why" \
             grep -q "^whit: error: $file: cannot write: Permission denied" "$OUT/stderr"
     done
+    HOME=$PWD/read-only XDG_CACHE_HOME= $plain "$WHIT" devices >"$OUT/stdout" 2>/dev/null
+    check "a home without permission: why there is no cache" \
+        grep -q "/.cache/whit: not used: Permission denied$" "$OUT/stdout"
     check "nothing is changed" test "$(ls -A read-only; cat read-only/old kept)" = "old
 old
 old"

@@ -46,7 +46,8 @@ const struct setting bench_options[] = {
     {"naive-limit", 0, NULL, "is gone: `--build sweep` builds the same tree as sweep-naive",
      .kind = SETTING_GONE},
     {"plot", 0, "FILE.svg",
-     "rays, frame, start, view, views, look: also draw how far each row is from what it must",
+     "rays, frame, start, view, views, look: also draw each row's\n"
+     "figure beside its goal",
      SETTING_AT_NAME(struct bench_request, plot)},
     {"against", 0, "PROGRAM", "frame, start: another whit, timed in turns",
      SETTING_AT_NAME(struct bench_request, against)},

@@ -55,7 +55,7 @@ static const struct setting options[] = {
      "take what these cases show now into the golden; further\n"
      "names may follow behind SUITE",
      .kind = SETTING_OWN, .read = read_accept},
-    {"reason", 0, "TEXT", "with --accept: why they are to be other; kept in the golden",
+    {"reason", 0, "TEXT", "with --accept: why pictures change; kept in the golden",
      SETTING_AT_NAME(struct check, reason)},
     {"accept-from", 0, "FOLDER|FILE",
      "the same with what a report of --json, or all in a folder,\n"
@@ -90,7 +90,7 @@ static const struct setting options[] = {
      "put N faults into the suite's scenes, one after the other, and\n"
      "print how many were caught and their cause found",
      SETTING_AT_COUNT(struct check, mutate), .min = 1, .max = 100000},
-    {"seed", 0, "N", "of these: another N draws other faults (0)",
+    {"seed", 0, "N", "of --mutate: another N draws other faults (0)",
      SETTING_AT_COUNT(struct check, seed), .max = UINT32_MAX},
     {"root", 0, "FOLDER", "what the suite's files lie below and are named from",
      "the suite's own folder", SETTING_AT_NAME(struct check, root)},

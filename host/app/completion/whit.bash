@@ -1,15 +1,21 @@
 # bash completion for whit, which knows its own words.
 _whit() {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} words=
+    local command=${COMP_WORDS[1]}
     if [ "$COMP_CWORD" -eq 1 ]; then
         words="$("$1" --complete 2>/dev/null | cut -f 1) --help --version"
-    elif [ "${current#-}" != "$current" ]; then
-        words=$("$1" --complete "${COMP_WORDS[1]}" 2>/dev/null | cut -f 1)
-    elif [ "${previous#--}" != "$previous" ]; then
-        words=$("$1" --complete "${COMP_WORDS[1]}" "$previous" 2>/dev/null | cut -f 1)
+    else
+        [ ! -f "$command" ] || command=view # a file in place of a command
+        [ "${previous#--}" = "$previous" ] ||
+            words=$("$1" --complete "$command" "$previous" 2>/dev/null | cut -f 1)
+        [ -n "$words" ] || [ "${current#-}" = "$current" ] ||
+            words=$("$1" --complete "$command" 2>/dev/null | cut -f 1)
     fi
     COMPREPLY=()
     [ -z "$words" ] || mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
-    [ -n "${COMPREPLY[0]-}" ] || mapfile -t COMPREPLY < <(compgen -f -- "$current")
+    if [ -z "${COMPREPLY[0]-}" ]; then
+        compopt -o filenames 2>/dev/null # words would get a slash where a folder has their name
+        mapfile -t COMPREPLY < <(compgen -f -- "$current")
+    fi
 }
-complete -o filenames -F _whit whit
+complete -F _whit whit

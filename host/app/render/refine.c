@@ -166,8 +166,8 @@ void refine_say(const struct refine_goal *goal, const struct refined *refined)
 {
     const char *plural = refined->samples == 1 ? "" : "s";
     if (refined->error < 0.0)
-        cli_note("%u sample%s a pixel, which tell nothing of what is wrong", refined->samples,
-                 plural);
+        cli_note("%u sample%s a pixel, which %s nothing of what is wrong", refined->samples, plural,
+                 refined->samples == 1 ? "tells" : "tell");
     else if (refined->reached)
         cli_note("%u sample%s a pixel: an RMSE of %.3g may be left", refined->samples, plural,
                  refined->error);

@@ -55,7 +55,7 @@ static const struct setting options[] = {
      "1, 2, 4, 8 ... samples, until by an estimate no more than an\n"
      "RMSE of ERROR is left, or as far as MS milliseconds go",
      .kind = SETTING_OWN, .read = refine_read},
-    {"counters", 0, NULL, "--stats (text) with what traversals cost",
+    {"counters", 0, NULL, "--stats, as text unless told, with what traversals cost",
      SETTING_AT_FLAG(struct render_request, counters)},
     {"fresh", 0, NULL,
      "for --budget-ms and --max-error: measure anew what is kept\n"

@@ -55,7 +55,8 @@ static int work(struct job *job, const struct scene_request *request)
    scene. */
 static bool is_for_picture(const struct settings *settings)
 {
-    static const char *const names[] = {"size", "camera", "aa", "depth", "numerics", "shader"};
+    static const char *const names[] = {"size",     "camera", "aa",          "depth",
+                                        "numerics", "shader", "minification"};
     for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
         if (settings_given(settings, names[i]))
             return true;
@@ -82,8 +83,8 @@ static int run(const struct cli_command *command, int argc, char **argv)
     if (is_for_picture(&job.settings) && !request.effects && !request.kernels) {
         cli_misuse(
             &reader,
-            "--size, --camera, --aa, --depth, --numerics and --shader are for the pictures of "
-            "--effects and --kernels");
+            "--size, --camera, --aa, --depth, --numerics, --minification and --shader are for the "
+            "pictures of --effects and --kernels");
         return reader.status;
     }
     if (request.effects && request.kernels) {
@@ -102,9 +103,9 @@ const struct cli_command command_scene = {
     .name = "scene",
     .arguments = "SCENE [options]",
     .summary = "Lists what is in a scene, what is wrong with it, and the effects it calls for.",
-    .details = "--size, --camera, --aa, --depth, --numerics and --shader are for the pictures of "
-               "--effects and\n"
-               "--kernels.\n",
+    .details =
+        "--size, --camera, --aa, --depth, --numerics, --minification and --shader are for the\n"
+        "pictures of --effects and --kernels.\n",
     .options = options,
     .settings = IN_SCENE,
     .usual = set_usual,

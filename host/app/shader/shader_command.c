@@ -57,7 +57,7 @@ static int print_template(struct cli_reader *reader)
         return cli_exit_of(cli_no_memory());
     fputs(text, stdout);
     whit_memory_destroy(text);
-    return EXIT_FINE;
+    return cli_finish_stdout(EXIT_FINE);
 }
 
 /* ---- A file ---- */
@@ -299,7 +299,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
 
 const struct cli_command command_shader = {
     .name = "shader",
-    .arguments = "FILE | new FUNCTION | extract PICTURE",
+    .arguments = "FILE | new FUNCTION | extract PICTURE [options]",
     .summary = "Compiles a file of shader functions, runs its tests, begins one, or takes it out "
                "of a picture.",
     .details =
