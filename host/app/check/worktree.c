@@ -14,14 +14,13 @@
 #include "app/cli.h"
 #include "base/array.h"
 
-extern char **environ;
-
 /* The worktree's folder inside of `holder`. */
 #define TREE "/tree"
 
-/* Variables that git sets for its hooks (`git rev-parse --local-env-vars`). With them `git worktree
-   add` would write into the index and the repository of the commit that is being made. */
-static bool is_of_hook(const char *variable)
+/* Takes variables that git sets for its hooks (`git rev-parse --local-env-vars`) from the
+   environment. With them `git worktree add` would write into the index and the repository of the
+   commit that is being made. */
+static void leave_hook(void)
 {
     static const char *const names[] = {"GIT_ALTERNATE_OBJECT_DIRECTORIES",
                                         "GIT_COMMON_DIR",
@@ -39,28 +38,8 @@ static bool is_of_hook(const char *variable)
                                         "GIT_REPLACE_REF_BASE",
                                         "GIT_SHALLOW_FILE",
                                         "GIT_WORK_TREE"};
-    size_t length = strcspn(variable, "=");
-    for (size_t i = 0; i < sizeof names / sizeof *names; ++i) {
-        if (strlen(names[i]) == length && memcmp(names[i], variable, length) == 0)
-            return true;
-    }
-    return false;
-}
-
-/* The environment without those, for free(); NULL: out of memory. */
-static char **environment_for_git(void)
-{
-    size_t count = 0, kept = 0;
-    while (environ[count])
-        ++count;
-    char **all = array_alloc(count + 1, sizeof *all);
-    for (size_t i = 0; all && i < count; ++i) {
-        if (!is_of_hook(environ[i]))
-            all[kept++] = environ[i];
-    }
-    if (all)
-        all[kept] = NULL;
-    return all;
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
+        unsetenv(names[i]);
 }
 
 /* Starts a program with these as its standard input and output; -1: /dev/null. Gives 0 or an
@@ -68,20 +47,16 @@ static char **environment_for_git(void)
 static int start(const char *const *words, int in, int out, pid_t *pid)
 {
     posix_spawn_file_actions_t actions;
-    char **environment = environment_for_git();
-    int failed = environment ? posix_spawn_file_actions_init(&actions) : ENOMEM;
-    if (failed) {
-        free(environment);
+    int failed = posix_spawn_file_actions_init(&actions);
+    if (failed)
         return failed;
-    }
     const int from[] = {in, out, out};
     for (int i = 0; !failed && i < 3; ++i)
         failed = from[i] < 0 ? posix_spawn_file_actions_addopen(&actions, i, "/dev/null", O_RDWR, 0)
                              : posix_spawn_file_actions_adddup2(&actions, from[i], i);
     if (!failed)
-        failed = posix_spawnp(pid, words[0], &actions, NULL, (char *const *)words, environment);
+        failed = posix_spawnp(pid, words[0], &actions, NULL, (char *const *)words, environ);
     posix_spawn_file_actions_destroy(&actions);
-    free(environment);
     return failed;
 }
 
@@ -207,6 +182,7 @@ whit_result worktree_add(struct worktree *tree, const char *folder, const char *
     folder = folder[0] ? folder : ".";
     if (revision[0] == '-' || !revision[0])
         return refuse(revision, "no revision is called that");
+    leave_hook();
     if (!find_prefix(folder, line, sizeof line))
         return refuse(revision, line);
     if (!make_holder(tree))
