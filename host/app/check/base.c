@@ -69,9 +69,8 @@ void base_close(struct base *base)
 /* ---- A case as it was ---- */
 
 struct past {
-    struct job job; /* with its scene and shader */
-    struct trial_input input;
-    struct trial picture;
+    struct job job, input; /* job: owns the scene and the shader of `input` */
+    struct drawing picture;
 };
 
 static whit_result draw_past(struct past *past, const struct studio *studio,
@@ -80,7 +79,7 @@ static whit_result draw_past(struct past *past, const struct studio *studio,
     struct job *job = &past->job;
     *past = (struct past){
         .job = {.settings = studio_settings(studio, item), .compiler = studio->job.compiler}};
-    past->input = (struct trial_input){.settings = job->settings, .device = studio->job.device};
+    past->input = (struct job){.settings = job->settings, .device = studio->job.device};
     whit_result result = job_load_shader(job);
     if (result == WHIT_OK)
         result = job_load(job);
@@ -100,12 +99,11 @@ static void finish_past(struct past *past, const struct studio *studio)
 static whit_result write_all(const struct past *past, const struct studio *studio,
                              const struct check_case *item, const struct drawing *drawing, FILE *to)
 {
-    const struct trial_input now = {studio_settings(studio, item), drawing->job.scene,
-                                    drawing->job.shader, studio->job.device};
+    const struct job now = studio_input(studio, item, drawing);
     struct drawing_difference difference;
     struct cause cause;
     char words[WORDS_BYTES];
-    drawing_difference_find(&past->picture.drawing, drawing, &difference);
+    drawing_difference_find(&past->picture, drawing, &difference);
     drawing_difference_write(&difference, words, sizeof words);
     fprintf(to, "%s; ", words);
     whit_result result = cause_find(&cause, &past->input, &past->picture, &now);
@@ -115,17 +113,16 @@ static whit_result write_all(const struct past *past, const struct studio *studi
     if (result != WHIT_OK)
         return result;
     cli_hush(true);
-    drawing_difference_write_pixel(&difference, &past->picture.drawing, drawing, words,
-                                   sizeof words);
+    drawing_difference_write_pixel(&difference, &past->picture, drawing, words, sizeof words);
     cli_hush(false);
     fprintf(to, "%s%s", words[0] ? "; " : "", words);
     return WHIT_OK;
 }
 
 /* Whether a golden has the picture that was drawn; `item`: its case, or NULL. */
-static bool has_picture(const struct golden_case *item, const struct trial *picture)
+static bool has_picture(const struct golden_case *item, const struct drawing *picture)
 {
-    return item && item->ids == picture->ids && item->colors == picture->colors;
+    return item && item->ids == picture->ids_hash && item->colors == picture->color_hash;
 }
 
 /* Writes why a picture that the revision draws too is not the golden's. */
@@ -145,7 +142,6 @@ whit_result base_explain(const struct base *base, struct studio *studio,
     const struct check_case *old = suite_find(&base->suite, item->name);
     const char *revision = base->tree.revision;
     struct past past;
-    struct trial now;
     size_t size;
     *text = NULL;
     *before = NULL;
@@ -158,8 +154,7 @@ whit_result base_explain(const struct base *base, struct studio *studio,
         return WHIT_ERROR_MEMORY;
     whit_result result = draw_past(&past, studio, old);
     if (result == WHIT_OK) {
-        trial_hash(drawing, &now);
-        bool same = trial_same(&now, &past.picture);
+        bool same = drawing_same(drawing, &past.picture);
         if (same)
             write_same(base, &past, item->name, to);
         else
@@ -167,8 +162,8 @@ whit_result base_explain(const struct base *base, struct studio *studio,
         if (accepted && !same && !has_picture(accepted, &past.picture))
             fprintf(to, "; at %s the picture is not the golden's either", revision);
     }
-    *before = past.picture.drawing.color;
-    past.picture.drawing.color = NULL;
+    *before = past.picture.color;
+    past.picture.color = NULL;
     finish_past(&past, studio);
     bool written = fclose(to) == 0;
     if (result == WHIT_OK && written)

@@ -83,8 +83,7 @@ static whit_result find_changes(struct cause *cause)
 /* Fills `input` with the new input in which the settings and functions marked in `back` have their
    old values, and marks in `parts` the parts of the scene to take back. Gives whether there are any
    such parts. */
-static bool take_back(const struct cause *cause, const bool *back, struct trial_input *input,
-                      bool *parts)
+static bool take_back(const struct cause *cause, const bool *back, struct job *input, bool *parts)
 {
     const struct settings *old = &cause->before.settings;
     bool any = false;
@@ -110,8 +109,8 @@ static bool take_back(const struct cause *cause, const bool *back, struct trial_
 static whit_result draw(void *user, const bool *back, bool *same)
 {
     const struct cause *cause = user;
-    struct trial_input input;
-    struct trial trial = {.colors = 0};
+    struct job input;
+    struct drawing trial = {.renderer = NULL};
     whit_scene *mixed = NULL;
     bool *parts = array_alloc_zeroed(cause->part_count, sizeof *parts);
     if (!parts)
@@ -125,15 +124,15 @@ static whit_result draw(void *user, const bool *back, bool *same)
     if (result == WHIT_OK)
         result = trial_draw(&trial, &input);
     cli_hush(false);
-    *same = result == WHIT_OK && trial_same(&trial, cause->was);
+    *same = result == WHIT_OK && drawing_same(&trial, cause->was);
     trial_finish(&trial);
     whit_scene_destroy(mixed);
     free(parts);
     return trial_ends_all(result) ? result : WHIT_OK;
 }
 
-whit_result cause_find(struct cause *cause, const struct trial_input *before,
-                       const struct trial *was, const struct trial_input *after)
+whit_result cause_find(struct cause *cause, const struct job *before, const struct drawing *was,
+                       const struct job *after)
 {
     *cause = (struct cause){.before = *before, .after = *after, .was = was};
     whit_result result = find_changes(cause);

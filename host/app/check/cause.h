@@ -23,8 +23,8 @@ struct cause_change {
 };
 
 struct cause {
-    struct trial_input before, after; /* old and new input, borrowed like `was`, the old picture */
-    const struct trial *was;
+    struct job before, after; /* inputs of trial_draw, borrowed like `was`, the old picture */
+    const struct drawing *was;
     whit_part *parts; /* parts of the old scene */
     uint32_t part_count;
     struct cause_change *changes;
@@ -34,8 +34,8 @@ struct cause {
 
 /* Finds the changes, and which of them are the cause. Errors were printed; call cause_finish() in
    any case. */
-WHIT_CHECK whit_result cause_find(struct cause *cause, const struct trial_input *before,
-                                  const struct trial *was, const struct trial_input *after);
+WHIT_CHECK whit_result cause_find(struct cause *cause, const struct job *before,
+                                  const struct drawing *was, const struct job *after);
 /* "cause: mesh "ball", vertices 2716 and 2717 moved by up to 0.0013", followed by changes that do
    not show in the picture. Names are as the files have them. */
 void cause_write(const struct cause *cause, FILE *to);

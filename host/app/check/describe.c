@@ -130,8 +130,8 @@ static bool fill(const struct drawing *drawing, const struct check_case *item, s
     whit_image_info info;
     whit_image_get_info(drawing->ids, &info);
     struct golden_case one = {.name = string_copy(item->name),
-                              .ids = drawing_hash_ids(drawing->ids),
-                              .colors = drawing_hash_floats(drawing->color),
+                              .ids = drawing->ids_hash,
+                              .colors = drawing->color_hash,
                               .width = info.width,
                               .height = info.height,
                               .made_by = string_copy(item->made_by)};

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/check/describe.h"
 #include "app/render/render_command.h"
 #include "base/array.h"
 
@@ -216,10 +217,8 @@ static whit_result render_by_reference(struct drawing *drawing)
     return result;
 }
 
-whit_result drawing_render(struct drawing *drawing)
+static whit_result render_by_device(struct drawing *drawing)
 {
-    if (drawing->reference)
-        return render_by_reference(drawing);
     whit_result result = whit_renderer_render(drawing->renderer);
     if (result == WHIT_OK)
         result = check_expected(drawing);
@@ -229,6 +228,22 @@ whit_result drawing_render(struct drawing *drawing)
     result = read_color(drawing);
     return result == WHIT_OK ? whit_renderer_image(drawing->renderer, WHIT_AOV_IDS, &drawing->ids)
                              : result;
+}
+
+whit_result drawing_render(struct drawing *drawing)
+{
+    whit_result result =
+        drawing->reference ? render_by_reference(drawing) : render_by_device(drawing);
+    if (result != WHIT_OK)
+        return result;
+    drawing->color_hash = drawing_hash_floats(drawing->color);
+    drawing->ids_hash = drawing_hash_ids(drawing->ids);
+    return WHIT_OK;
+}
+
+bool drawing_same(const struct drawing *a, const struct drawing *b)
+{
+    return a->color_hash == b->color_hash && a->ids_hash == b->ids_hash;
 }
 
 struct settings studio_settings(const struct studio *studio, const struct check_case *item)
@@ -242,6 +257,15 @@ struct settings studio_settings(const struct studio *studio, const struct check_
     settings.time_limit_s = common->time_limit_s;
     settings.quiet = common->quiet;
     return settings;
+}
+
+struct job studio_input(const struct studio *studio, const struct check_case *item,
+                        const struct drawing *drawing)
+{
+    return (struct job){.settings = studio_settings(studio, item),
+                        .scene = drawing->job.scene,
+                        .shader = drawing->job.shader,
+                        .device = studio->job.device};
 }
 
 whit_result studio_draw(struct studio *studio, uint32_t index, bool counts, struct drawing *drawing)

@@ -32,8 +32,8 @@ struct drawing {
     whit_reference *reference;
     whit_renderer_params params;
     whit_stats stats;
-    whit_image *color, *ids; /* color: linear floats; ids: instance and primitive. Both are hashed
-                                as they are */
+    whit_image *color, *ids;       /* color: linear floats; ids: instance and primitive */
+    uint64_t color_hash, ids_hash; /* of these images as they are */
 };
 
 /* Opens the device, unless `kind` is the reference; it logs to `log`, which is borrowed. `common`:
@@ -49,11 +49,16 @@ WHIT_CHECK whit_result studio_draw(struct studio *studio, uint32_t index, bool c
 void drawing_finish(struct drawing *drawing);
 /* The case's own settings, with those of the command line that hold for all cases. */
 struct settings studio_settings(const struct studio *studio, const struct check_case *item);
+/* What the studio has drawn a case with, as input of trial_draw. */
+struct job studio_input(const struct studio *studio, const struct check_case *item,
+                        const struct drawing *drawing);
 /* Makes a renderer, which the caller owns, for the drawing's job and params, or the drawing's
    reference where the job has no device. */
 WHIT_CHECK whit_result drawing_make(struct drawing *drawing, whit_renderer **renderer);
-/* Renders, and reads what the drawing's settings ask for. */
+/* Renders, reads what the drawing's settings ask for, and hashes it. */
 WHIT_CHECK whit_result drawing_render(struct drawing *drawing);
+/* Whether hits and colours of two pictures are the same bytes. */
+bool drawing_same(const struct drawing *a, const struct drawing *b);
 /* probe.c: the camera ray of a pixel's first sample, its hit in ray->device; a miss where a
    shader's camera() sends none. */
 WHIT_CHECK whit_result drawing_probe(const struct drawing *drawing, uint32_t x, uint32_t y,

@@ -16,8 +16,8 @@ double fault_strong(whit_fault_kind kind)
 whit_result fault_draw(const struct fault_case *item, const whit_fault *faults, uint32_t count,
                        enum fault_end *end, whit_scene **made)
 {
-    struct trial_input input = item->input;
-    struct trial trial = {.colors = 0};
+    struct job input = item->input;
+    struct drawing trial;
     *end = FAULT_NONE;
     if (made)
         *made = NULL;
@@ -26,7 +26,7 @@ whit_result fault_draw(const struct fault_case *item, const whit_fault *faults, 
     bool fits = result == WHIT_OK;
     if (fits) {
         result = trial_draw(&trial, &input);
-        bool same = result == WHIT_OK && trial_same(&trial, &item->was);
+        bool same = result == WHIT_OK && drawing_same(&trial, item->was);
         *end = same ? FAULT_SAME : FAULT_SEEN;
         trial_finish(&trial);
     }

@@ -8,9 +8,8 @@
 /* A case without faults, and its picture. */
 struct fault_case {
     const char *name;
-    struct trial_input input;
-    struct trial was;
-    const whit_image *ids; /* hit identities of that picture */
+    struct job input; /* of trial_draw */
+    const struct drawing *was;
 };
 
 enum fault_end {

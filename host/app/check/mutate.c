@@ -52,12 +52,12 @@ static whit_result is_altered(const whit_scene *before, const whit_scene *scene,
 static whit_result is_right(const struct fault_case *item, const whit_fault *fault,
                             const whit_scene *made, bool *right)
 {
-    struct trial_input now = item->input;
+    struct job now = item->input;
     struct cause cause = {.count = 0};
     whit_scene *alone = NULL;
     *right = false;
     now.scene = (whit_scene *)made;
-    whit_result result = cause_find(&cause, &item->input, &item->was, &now);
+    whit_result result = cause_find(&cause, &item->input, item->was, &now);
     if (result == WHIT_OK)
         result = whit_scene_fault(item->input.scene, fault, 1, &alone);
     *right = result == WHIT_OK && cause.search.end == SEARCH_FOUND && cause.search.cause_count > 0;
@@ -82,8 +82,8 @@ static whit_result is_right(const struct fault_case *item, const whit_fault *fau
 static bool order_is_seen(const struct fault_case *item, const whit_scene *made)
 {
     whit_image_info info;
-    whit_image_get_info(item->ids, &info);
-    const uint32_t *words = whit_image_words(item->ids);
+    whit_image_get_info(item->was->ids, &info);
+    const uint32_t *words = whit_image_words(item->was->ids);
     uint32_t last = WHIT_NONE;
     bool seen = false;
     for (size_t i = 0; !seen && i < (size_t)info.width * info.height; ++i, words += 2) {

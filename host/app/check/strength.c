@@ -11,17 +11,10 @@ static whit_result try_case(struct check *check, struct studio *studio, uint32_t
     struct drawing drawing;
     suite_errors_of(&check->suite, item);
     whit_result result = studio_draw(studio, index, false, &drawing);
-    struct fault_case faulted = {
-        .name = item->name,
-        .input = {studio_settings(studio, item), drawing.job.scene, drawing.job.shader,
-                  studio->job.device},
-    };
-    if (result == WHIT_OK) {
-        trial_hash(&drawing, &faulted.was);
-        faulted.ids = drawing.ids;
+    const struct fault_case faulted = {item->name, studio_input(studio, item, &drawing), &drawing};
+    if (result == WHIT_OK)
         result = check->power ? power_case(&mutate->random, &faulted)
                               : mutate_case(mutate, &faulted, faults);
-    }
     drawing_finish(&drawing);
     cli_errors_of(NULL);
     return result;

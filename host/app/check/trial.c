@@ -1,17 +1,11 @@
 #include "app/check/trial.h"
 
-#include "app/check/describe.h"
 #include "app/render/render_command.h"
 
-whit_result trial_draw(struct trial *trial, const struct trial_input *input)
+whit_result trial_draw(struct drawing *drawing, const struct job *input)
 {
-    struct drawing *drawing = &trial->drawing;
     struct job *job = &drawing->job;
-    *trial = (struct trial){.colors = 0};
-    *job = (struct job){.settings = input->settings,
-                        .scene = input->scene,
-                        .device = input->device,
-                        .shader = input->shader};
+    *drawing = (struct drawing){.job = *input};
     whit_result result = reference_check(job);
     if (result == WHIT_OK)
         result = job_take_scene(job);
@@ -25,29 +19,15 @@ whit_result trial_draw(struct trial *trial, const struct trial_input *input)
     }
     if (result == WHIT_OK)
         result = drawing_render(drawing);
-    if (result != WHIT_OK)
-        return result;
-    trial_hash(drawing, trial);
-    return job_still_wanted();
+    return result == WHIT_OK ? job_still_wanted() : result;
 }
 
-void trial_finish(struct trial *trial)
+void trial_finish(struct drawing *drawing)
 {
-    whit_accel *accel = trial->drawing.job.accel;
-    whit_renderer_destroy(trial->drawing.renderer);
-    drawing_finish(&trial->drawing);
+    whit_accel *accel = drawing->job.accel;
+    whit_renderer_destroy(drawing->renderer);
+    drawing_finish(drawing);
     whit_accel_destroy(accel);
-}
-
-void trial_hash(const struct drawing *drawing, struct trial *out)
-{
-    out->colors = drawing_hash_floats(drawing->color);
-    out->ids = drawing_hash_ids(drawing->ids);
-}
-
-bool trial_same(const struct trial *a, const struct trial *b)
-{
-    return a->colors == b->colors && a->ids == b->ids;
 }
 
 bool trial_ends_all(whit_result result)
