@@ -45,11 +45,9 @@ static bool check(struct cli_reader *reader, const struct line *line)
         if (settings_given(settings, of_process[i]))
             return cli_misuse(reader, "--%s is of all lines, or of none", of_process[i]);
     }
-    const char *other = refine_is_wanted(&line->request.refine) ? "--refine"
-                        : settings->budget_ms > 0.0             ? "--budget-ms"
-                        : settings->max_error > 0.0             ? "--max-error"
-                        : line->request.counters                ? "--counters"
-                                                                : NULL;
+    const char *other = render_asks(settings, &line->request, "--refine", "--max-error");
+    if (!other && line->request.counters)
+        other = "--counters";
     return !other || cli_misuse(reader, "%s is for `whit render`", other);
 }
 
@@ -130,27 +128,13 @@ static int compare_places(const void *a, const void *b)
     return x->number < y->number ? -1 : 1;
 }
 
-static void sort(struct lines *lines)
+/* Puts the line into its group, that of the first line with this hash, so that groups sort by their
+   first line in the file. False: out of memory. */
+static bool find_group(struct lines *lines, uint64_t hash, struct line_place *place, int group)
 {
-    if (lines->count)
-        qsort(lines->places, lines->count, sizeof *lines->places, compare_places);
-}
-
-/* Replaces hash `group` of each line by the smallest line number among lines with the same hashes
-   up to `group`, so that groups sort by their first line in the file. */
-static void number_group(struct lines *lines, int group)
-{
-    struct line_place *places = lines->places;
-    sort(lines);
-    for (uint32_t i = 0, end = 0; i < lines->count; i = end) {
-        uint64_t hashes[LINE_GROUPS], least = places[i].number;
-        size_t bytes = ((size_t)group + 1) * sizeof *hashes;
-        memcpy(hashes, places[i].group, sizeof hashes);
-        for (; end < lines->count && memcmp(places[end].group, hashes, bytes) == 0; ++end)
-            least = places[end].number < least ? places[end].number : least;
-        for (uint32_t k = i; k < end; ++k)
-            places[k].group[group] = least;
-    }
+    place->group[group] = place->number;
+    return key_table_find(&lines->groups, &hash, sizeof hash, &place->group[group]) ||
+           key_table_add(&lines->groups, &hash, sizeof hash, place->number);
 }
 
 int lines_init(struct lines *lines, struct line *line)
@@ -167,26 +151,25 @@ int lines_init(struct lines *lines, struct line *line)
         struct line_place *place = &lines->places[i];
         if (!line_read(line, lines, place))
             return EXIT_USAGE;
-        place->group[LINE_SCENE] = settings_hash_scene(&line->job.settings);
-        place->group[LINE_KERNEL] = settings_hash_kernel(&line->job.settings);
         lines->compile |= settings_compiles(&line->job.settings);
-        if (!outputs_add(&lines->outputs, &line->request, place->number))
+        if (!find_group(lines, settings_hash_scene(&line->job.settings), place, LINE_SCENE) ||
+            !find_group(lines, settings_hash_kernel(&line->job.settings), place, LINE_KERNEL) ||
+            !outputs_add(&lines->outputs, &line->request, place->number))
             return cli_exit_of(cli_no_memory());
     }
     if (!outputs_check(&lines->outputs, lines->path))
         return EXIT_USAGE;
     outputs_finish(&lines->outputs);
-    number_group(lines, LINE_SCENE);
-    number_group(lines, LINE_KERNEL);
-    sort(lines);
+    if (lines->count)
+        qsort(lines->places, lines->count, sizeof *lines->places, compare_places);
     return EXIT_FINE;
 }
 
 bool lines_share_scene(const struct lines *lines, const struct line_place *place)
 {
-    const uint64_t *own = place->group;
+    const uint32_t *own = place->group;
     for (uint32_t i = 0; i < lines->count; ++i) {
-        const uint64_t *other = lines->places[i].group;
+        const uint32_t *other = lines->places[i].group;
         if (other[LINE_SCENE] == own[LINE_SCENE] && other[LINE_KERNEL] != own[LINE_KERNEL])
             return true;
     }
@@ -198,5 +181,6 @@ void lines_finish(struct lines *lines)
     free(lines->places);
     free(lines->text);
     outputs_finish(&lines->outputs);
+    key_table_finish(&lines->groups);
     *lines = (struct lines){0};
 }

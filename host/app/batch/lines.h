@@ -3,6 +3,7 @@
 #define APP_BATCH_LINES_H
 
 #include "app/batch/outputs.h"
+#include "base/key_table.h"
 
 enum { LINE_BYTES_MAX = 64 << 10 };
 
@@ -12,7 +13,7 @@ enum { LINE_SCENE, LINE_KERNEL, LINE_GROUPS };
 /* A line of the text: `bytes` bytes from byte `at` on, without its end. */
 struct line_place {
     size_t at, bytes;
-    uint64_t group[LINE_GROUPS]; /* for each LINE_* grouping, equal in lines of the same group */
+    uint32_t group[LINE_GROUPS]; /* the number of the first line of its group, by each LINE_* */
     uint32_t number;
     bool left; /* it is still to be drawn */
 };
@@ -24,8 +25,9 @@ struct lines {
     bool resume;                /* --resume of the command, for all lines */
     struct line_place *places;  /* in the order in which they are drawn */
     uint32_t count, capacity;
-    struct outputs outputs; /* while lines are read */
-    bool compile;           /* a line has functions or stages that are compiled */
+    struct outputs outputs;  /* while lines are read */
+    struct key_table groups; /* likewise: numbers of first lines by the hash of their group */
+    bool compile;            /* a line has functions or stages that are compiled */
 };
 
 /* A line that was read; its words are in `text`. */
