@@ -399,11 +399,7 @@ int cli_finish_stdout(int status)
 
 int cli_print_json(json_t *value)
 {
-    char *text = value ? document_lines(value) : NULL;
-    if (!text) {
-        cli_error("out of memory");
-        return EXIT_USAGE;
-    }
+    char *text = document_lines(value);
     /* putchar() writes through the buffer of stdout, which keeps text that cannot be written, so
        that cli_finish_stdout learns why it failed. */
     for (const char *c = text; *c; ++c)

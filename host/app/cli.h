@@ -126,8 +126,7 @@ const char *cli_shown(const char *text);
 /* Flushes standard output; a failed write is an error, as with `whit ... > /dev/full`. Returns the
    exit code, else `status`. */
 int cli_finish_stdout(int status);
-/* Prints a jansson value, keys in the order they were added. Takes over the reference; NULL means
-   that memory ran out. */
+/* Prints a jansson value, keys in the order they were added. Takes over the reference. */
 struct json_t;
 int cli_print_json(struct json_t *value);
 

@@ -204,18 +204,16 @@ json_t *document_device(const whit_device_info *info)
 }
 
 /* Does not use json_dumps: jansson 2.14 silently drops a key that it has no memory for, while a
-   stream remembers the failure. NULL: memory ran out. */
+   stream remembers the failure. */
 static char *dump_all(const json_t *value, size_t flags)
 {
     char *text = NULL;
     size_t size;
     FILE *to = open_memstream(&text, &size);
-    bool whole = to && value && json_dumpf(value, to, flags) == 0 && !ferror(to);
-    whole = to && fclose(to) == 0 && whole;
-    if (whole)
-        return text;
-    free(text);
-    return NULL;
+    bool whole = to && json_dumpf(value, to, flags) == 0 && !ferror(to);
+    if (!to || fclose(to) != 0 || !whole)
+        out_of_memory();
+    return text;
 }
 
 /* Escapes characters that control a terminal. In JSON they occur only inside strings, where an
@@ -223,9 +221,11 @@ static char *dump_all(const json_t *value, size_t flags)
 static char *dump(json_t *value, size_t flags)
 {
     char *text = dump_all(value, flags | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
-    char *shown = text ? malloc(6 * strlen(text) + WHIT_SHOWN_BYTES) : NULL, *to = shown;
+    char *shown = malloc(6 * strlen(text) + WHIT_SHOWN_BYTES), *to = shown;
     json_decref(value);
-    for (const char *from = shown ? text : ""; *from; to += strlen(to)) {
+    if (!shown)
+        out_of_memory();
+    for (const char *from = text; *from; to += strlen(to)) {
         if (*from == '\n')
             from += sprintf(to, "\n");
         else

@@ -47,8 +47,8 @@ json_t *document_device(const whit_device_info *info); /* its name, driver and k
 WHIT_CHECK whit_result document_save(json_t *value, const char *path);
 /* Writes `text` to a file and frees it; `text` NULL: memory ran out before. Errors were printed. */
 WHIT_CHECK whit_result document_save_text(char *text, const char *path);
-/* The text of a document: in one line, or indented as document_save writes it; free() it. NULL:
-   memory ran out. Takes over `value`. */
+/* The text of a document: in one line, or indented as document_save writes it; free() it. Takes
+   over `value`. */
 char *document_line(json_t *value);
 char *document_lines(json_t *value);
 

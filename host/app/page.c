@@ -53,7 +53,7 @@ whit_result page_save(const char *html, json_t *document, const char *path)
     char *text = NULL;
     size_t bytes = 0;
     char *line = document_line(document);
-    FILE *to = line ? open_memstream(&text, &bytes) : NULL;
+    FILE *to = open_memstream(&text, &bytes);
     if (to) {
         fwrite(html, 1, (size_t)(at - html), to);
         put_report(to, line);

@@ -85,7 +85,7 @@ whit_result check_save_page(const struct check *check, int status)
     }
     find_objects(check, json_object_get(document, "cases"), objects);
     char *line = document_line(json_incref(document));
-    size_t used = strlen(check_page_html) + (line ? strlen(line) : 0);
+    size_t used = strlen(check_page_html) + strlen(line);
     free(line);
     put_pictures(check, objects, used < PAGE_BYTES_MAX ? PAGE_BYTES_MAX - used : 0);
     free(objects);

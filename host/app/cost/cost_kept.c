@@ -75,6 +75,8 @@ static json_t *choice_document(const struct cost_kept_choice *kept)
 
 void cost_kept_save(const struct cost_kept *kept, const char *name)
 {
+    if (!kept->report.complete)
+        return;
     json_t *root = document_root();
     document_text(root, "made", kept->made);
     document_put(root, "figures", cost_report_document(&kept->report));
@@ -82,8 +84,7 @@ void cost_kept_save(const struct cost_kept *kept, const char *name)
     for (uint32_t i = 0; i < kept->choice_count; ++i)
         document_append(choices, choice_document(&kept->choices[i]));
     char *text = document_line(root);
-    if (text && kept->report.complete)
-        store_write(&cli_log, name, text, strlen(text));
+    store_write(&cli_log, name, text, strlen(text));
     free(text);
 }
 

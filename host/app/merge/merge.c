@@ -11,11 +11,7 @@
 
 static const char *text_of(const struct merge_part *part, const char *key)
 {
-    for (uint32_t i = 0; i < part->text_count; ++i) {
-        if (strcmp(part->texts[i].key, key) == 0)
-            return part->texts[i].value;
-    }
-    return NULL;
+    return recipe_text(part->texts, part->text_count, key);
 }
 
 static whit_result read_part(struct merge_part *part, const char *path,
@@ -302,26 +298,20 @@ static whit_result merge_tile(const struct merge *merge, uint32_t tile, whit_ima
 
 /* ---- The picture ---- */
 
-/* The recipe that a single run would have written. NULL: memory ran out, with a message. */
-static whit_text *make_texts(const struct merge *merge, char **counters, uint32_t *count)
+/* Writes the recipe that a single run would have written into `texts`, which has room for that of
+   the first part; gives the number of its texts. */
+static uint32_t fill_texts(const struct merge *merge, const char *counters, whit_text *texts)
 {
     const struct merge_part *first = &merge->parts[0];
-    whit_text *texts = calloc(first->text_count + 1, sizeof *texts);
-    *counters = recipe_counters(&merge->stats);
-    *count = 0;
-    if (!texts || !*counters) {
-        cli_error("out of memory");
-        free(texts);
-        return NULL;
-    }
+    uint32_t count = 0;
     for (uint32_t i = 0; i < first->text_count; ++i) {
         whit_text text = first->texts[i];
         if (strcmp(text.key, "whit:counters") == 0)
-            text.value = *counters;
+            text.value = counters;
         if (strcmp(text.key, PART_KEY) != 0)
-            texts[(*count)++] = text;
+            texts[count++] = text;
     }
-    return texts;
+    return count;
 }
 
 static whit_result write_tiles(const struct merge *merge, const char *output,
@@ -352,12 +342,12 @@ static whit_result write_tiles(const struct merge *merge, const char *output,
 whit_result merge_write(const struct merge *merge, const char *output,
                         struct cli_progress *progress)
 {
-    char *counters;
-    uint32_t text_count;
-    whit_text *texts = make_texts(merge, &counters, &text_count);
-    whit_result result = WHIT_ERROR_MEMORY;
-    if (texts)
-        result = write_tiles(merge, output, texts, text_count, progress);
+    whit_text *texts = calloc(merge->parts[0].text_count + 1, sizeof *texts);
+    if (!texts)
+        return cli_no_memory();
+    char *counters = recipe_counters(&merge->stats);
+    uint32_t text_count = fill_texts(merge, counters, texts);
+    whit_result result = write_tiles(merge, output, texts, text_count, progress);
     free(texts);
     free(counters);
     return result;

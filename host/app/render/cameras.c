@@ -11,30 +11,13 @@ enum { PIXELS_AT_ONCE = 1 << 22 };
 
 /* ---- Options ---- */
 
-/* An option that was given and does not go with --cameras; NULL: none. */
-static const char *other_option(const struct settings *settings,
-                                const struct render_request *request)
-{
-    if (settings_given(settings, "camera"))
-        return "--camera";
-    if (request->frames.given)
-        return "--frames";
-    if (part_is_given(&request->part))
-        return request->part.tiles ? "--tile" : "--samples-part";
-    if (request->resume)
-        return "--resume";
-    if (settings->shader[0])
-        return "--shader";
-    return settings->stages[0] ? "--stages" : part_not_of(settings, request);
-}
-
 bool cameras_check(struct cli_reader *reader, const struct job *job, struct render_request *request)
 {
     struct cameras *cameras = &request->cameras;
     if (!cameras->file)
         return !cameras->distances ||
                cli_misuse(reader, "--distances is for the views of --cameras");
-    const char *other = other_option(&job->settings, request);
+    const char *other = render_asks(&job->settings, request, "--camera", "--thumbnail");
     if (other)
         return cli_misuse(reader, "--cameras and %s do not go together", other);
     whit_result result = whit_cameras_load(cameras->file, &cli_log, &cameras->all, &cameras->count);
@@ -51,7 +34,7 @@ void cameras_finish(struct cameras *cameras)
 
 /* ---- Files ---- */
 
-static char *camera_line(const whit_camera *camera)
+static json_t *camera_document(const whit_camera *camera)
 {
     json_t *object = document_object();
     document_numbers(object, "eye", camera->eye, 3);
@@ -67,7 +50,7 @@ static char *camera_line(const whit_camera *camera)
         document_number(object, "lens", camera->lens_radius);
     if (camera->lens_radius > 0.0 && camera->focus_distance > 0.0)
         document_number(object, "focus", camera->focus_distance);
-    return document_line(object);
+    return object;
 }
 
 /* Images of all views that were drawn together, one below the other; the files of a view are cut
@@ -109,12 +92,9 @@ static whit_result save_view(const struct job *job, const struct render_request 
     if (!recipe_init(&recipe, &settings, job->scene, NULL, &device, NULL, request->output))
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
-    if (!named) {
-        recipe.camera = camera_line(&cameras->all[number]);
-        recipe.texts[recipe.count++] = (whit_text){VIEW_CAMERA_KEY, recipe.camera};
-        result = recipe.camera ? WHIT_OK : WHIT_ERROR_MEMORY;
-    }
-    if (result == WHIT_OK && request->ids)
+    if (!named)
+        recipe_add_camera(&recipe, camera_document(&cameras->all[number]));
+    if (request->ids)
         result = save_rows(drawn->ids, at * height, height, request->ids, number, &recipe);
     if (result == WHIT_OK && cameras->distances)
         result =

@@ -27,8 +27,4 @@ WHIT_CHECK whit_result cameras_render(const struct job *job, const struct render
                                       struct sequence *sequence);
 void cameras_finish(struct cameras *cameras);
 
-/* Key in the recipe of a view whose camera cannot be given by --camera: the camera as a line of a
-   file for --cameras. */
-#define VIEW_CAMERA_KEY "whit:camera"
-
 #endif

@@ -62,28 +62,6 @@ bool part_read_samples(const struct setting *setting, const char *value, void *r
     return read_share(value, &part->set, &part->sets, why);
 }
 
-/* An option that was given and only whole pictures can have, or NULL. */
-const char *part_not_of(const struct settings *settings, const struct render_request *request)
-{
-    if (settings->picture.sampling.kind == WHIT_SAMPLING_ADAPTIVE)
-        return "--aa adaptive";
-    if (settings->paint != PAINT_COLOR)
-        return "--view";
-    if (request->counters)
-        return "--counters";
-    if (settings->edges != EDGES_OFF)
-        return "--edges";
-    if (settings->grid)
-        return "--grid";
-    if (refine_is_wanted(&request->refine))
-        return "--refine";
-    if (settings->budget_ms > 0.0)
-        return "--budget-ms";
-    if (settings->max_error > 0.0)
-        return "--max-error";
-    return request->thumbnail ? "--thumbnail" : NULL;
-}
-
 static bool is_power_of_2(uint32_t n)
 {
     return n && (n & (n - 1)) == 0;
@@ -128,7 +106,7 @@ bool part_check(struct cli_reader *reader, const struct job *job,
     if (!part_is_given(part))
         return true;
     const char *option = part->tiles ? "tile" : "samples-part";
-    const char *other = part_not_of(settings, request);
+    const char *other = render_asks(settings, request, "--aa adaptive", "--thumbnail");
     if (other)
         return cli_misuse(reader, "--%s and %s: only the whole picture can tell", option, other);
     uint32_t max = tiles_max(settings->picture.height);
@@ -223,14 +201,6 @@ json_t *part_document(const struct part *part, const struct settings *settings)
     document_count(object, "height", settings->picture.height);
     document_count(object, "samples", samples ? samples : 1);
     return object;
-}
-
-char *part_line(const struct part *part, const struct settings *settings)
-{
-    char *line = document_line(part_document(part, settings));
-    if (!line)
-        cli_error("out of memory");
-    return line;
 }
 
 static uint32_t get_count(const json_t *object, const char *key)

@@ -26,8 +26,6 @@ bool part_read_samples(const struct setting *setting, const char *value, void *r
 /* Checks that the other options go with --tile and --samples-part. */
 bool part_check(struct cli_reader *reader, const struct job *job,
                 const struct render_request *request);
-/* An option that was given and is for whole pictures of one camera; NULL: none. */
-const char *part_not_of(const struct settings *settings, const struct render_request *request);
 /* Checks that the functions of the job's shader go with a part: the merged picture could not have
    all images of aovs beside its colours, nor post() of all samples. */
 bool part_check_shader(const struct job *job, const struct render_request *request);
@@ -54,9 +52,7 @@ struct part_place {
 /* A part_place as JSON. */
 struct json_t;
 struct json_t *part_document(const struct part *part, const struct settings *settings);
-/* This JSON in one line; free() it. NULL: memory ran out, with a message. */
-char *part_line(const struct part *part, const struct settings *settings);
-/* Reads such a line. False: it was not written by whit. */
+/* Reads this JSON, in one line. False: it was not written by whit. */
 bool part_of_line(const char *line, struct part_place *place);
 
 /* A PFM has no room for a recipe: it is kept in NAME.pfm.part beside it, with a hash of the

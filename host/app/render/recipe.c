@@ -85,8 +85,7 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
     recipe->scene = strdup(cli_shown(settings->scene));
     recipe->name = strdup(cli_shown(recipe->device.name));
     recipe->driver = strdup(cli_shown(recipe->device.driver));
-    if (!recipe->command || !recipe->options || (stats && !recipe->counters) || !recipe->scene ||
-        !recipe->name || !recipe->driver) {
+    if (!recipe->command || !recipe->scene || !recipe->name || !recipe->driver) {
         cli_error("out of memory");
         recipe_finish(recipe);
         return false;
@@ -105,7 +104,7 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
     return true;
 }
 
-bool recipe_add_view(struct recipe *recipe, const struct settings *settings,
+void recipe_add_view(struct recipe *recipe, const struct settings *settings,
                      const struct view_figures *figures)
 {
     json_t *object = document_object();
@@ -115,19 +114,31 @@ bool recipe_add_view(struct recipe *recipe, const struct settings *settings,
     document_number(object, "mean", figures->mean);
     document_number(object, "max", figures->max);
     recipe->view = document_line(object);
-    if (!recipe->view)
-        cli_error("out of memory");
     add(recipe, "whit:view", recipe->view);
-    return recipe->view != NULL;
 }
 
-bool recipe_add_part(struct recipe *recipe, const struct part *part,
+void recipe_add_part(struct recipe *recipe, const struct part *part,
                      const struct settings *settings)
 {
-    recipe->part = part_line(part, settings);
-    if (recipe->part)
-        add(recipe, PART_KEY, recipe->part);
-    return recipe->part != NULL;
+    if (!part_is_given(part))
+        return;
+    recipe->part = document_line(part_document(part, settings));
+    add(recipe, PART_KEY, recipe->part);
+}
+
+void recipe_add_camera(struct recipe *recipe, json_t *camera)
+{
+    recipe->camera = document_line(camera);
+    add(recipe, VIEW_CAMERA_KEY, recipe->camera);
+}
+
+const char *recipe_text(const whit_text *texts, uint32_t count, const char *key)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        if (strcmp(texts[i].key, key) == 0)
+            return texts[i].value;
+    }
+    return NULL;
 }
 
 void recipe_finish(struct recipe *recipe)

@@ -6,6 +6,10 @@
 #include "app/render/part.h"
 #include "app/render/view_image.h"
 
+/* Key in the recipe of a view whose camera cannot be given by --camera: the camera as a line of a
+   file for --cameras. */
+#define VIEW_CAMERA_KEY "whit:camera"
+
 /* The texts that a picture carries about itself: only what decides its pixels, so that the same
    inputs give the same bytes. */
 enum { RECIPE_TEXTS = 11 };
@@ -23,15 +27,19 @@ struct recipe {
 bool recipe_init(struct recipe *recipe, const struct settings *settings, const whit_scene *scene,
                  const whit_shader *shader, const whit_device_info *device, const whit_stats *stats,
                  const char *output);
-/* Adds view, scale and figures of a picture of costs; false as above. */
-bool recipe_add_view(struct recipe *recipe, const struct settings *settings,
+/* Adds view, scale and figures of a picture of costs. */
+void recipe_add_view(struct recipe *recipe, const struct settings *settings,
                      const struct view_figures *figures);
-/* Adds to the recipe which part of a picture was drawn; false as above. */
-bool recipe_add_part(struct recipe *recipe, const struct part *part,
+/* Adds to the recipe which part of a picture was drawn, if it is not all of it. */
+void recipe_add_part(struct recipe *recipe, const struct part *part,
                      const struct settings *settings);
+/* Adds the camera of a view that --camera has no words for; takes over `camera`. */
+void recipe_add_camera(struct recipe *recipe, json_t *camera);
+/* The value of a text; NULL: there is none with this key. */
+const char *recipe_text(const whit_text *texts, uint32_t count, const char *key);
 /* How many rays of each kind there were, as an object. */
 json_t *recipe_rays(const whit_stats *stats);
-/* The text of whit:counters for these statistics; free() it. NULL: memory ran out. */
+/* The text of whit:counters for these statistics; free() it. */
 char *recipe_counters(const whit_stats *stats);
 void recipe_finish(struct recipe *recipe);
 

@@ -42,9 +42,9 @@ bool refine_check(struct cli_reader *reader, const struct job *job,
     const struct settings *settings = &job->settings;
     if (!refine_is_wanted(&request->refine))
         return true;
-    if (settings->budget_ms > 0.0 || settings->max_error > 0.0)
-        return cli_misuse(reader, "--refine and %s: one of them",
-                          settings->budget_ms > 0.0 ? "--budget-ms" : "--max-error");
+    const char *other = render_asks(settings, request, "--budget-ms", "--max-error");
+    if (other)
+        return cli_misuse(reader, "--refine and %s: one of them", other);
     if (settings_given(settings, "aa"))
         return cli_misuse(reader, "--refine chooses --aa by itself");
     if (request->frames.given || settings->paint != PAINT_COLOR)
@@ -124,13 +124,8 @@ static whit_result finish(struct job *job, const struct refine_goal *goal,
                           struct drawn_images *images)
 {
     const whit_refine_info *now = &steps->now;
-    *refined = (struct refined){
-        .samples = now->samples,
-        .error = now->error,
-        .error_of_cuts = now->error_of_cuts,
-        .cut_radiance = now->cut_radiance,
-        .reached = goal->limit_ms > 0.0 || (now->error >= 0.0 && now->error <= goal->error),
-    };
+    refined->now = *now;
+    refined->reached = goal->limit_ms > 0.0 || (now->error >= 0.0 && now->error <= goal->error);
     job->settings.picture.sampling = (whit_sampling){.count = now->samples};
     whit_result result = whit_refine_image(steps->refine, &images->color);
     return result == WHIT_OK ? layers_read(job->shader, NULL, steps->refine, &images->layers)
@@ -164,18 +159,18 @@ whit_result refine_render(struct job *job, const struct render_request *request,
 
 void refine_say(const struct refine_goal *goal, const struct refined *refined)
 {
-    const char *plural = refined->samples == 1 ? "" : "s";
-    if (refined->error < 0.0)
-        cli_note("%u sample%s a pixel, which %s nothing of what is wrong", refined->samples, plural,
-                 refined->samples == 1 ? "tells" : "tell");
+    const char *plural = refined->now.samples == 1 ? "" : "s";
+    if (refined->now.error < 0.0)
+        cli_note("%u sample%s a pixel, which %s nothing of what is wrong", refined->now.samples,
+                 plural, refined->now.samples == 1 ? "tells" : "tell");
     else if (refined->reached)
-        cli_note("%u sample%s a pixel: an RMSE of %.3g may be left", refined->samples, plural,
-                 refined->error);
-    else if (refined->error_of_cuts > goal->error)
+        cli_note("%u sample%s a pixel: an RMSE of %.3g may be left", refined->now.samples, plural,
+                 refined->now.error);
+    else if (refined->now.error_of_cuts > goal->error)
         cli_error("an RMSE of %.3g may be left, not %.6g: %.3g of it are rays that --depth and "
                   "--bailout cut, and more samples leave it",
-                  refined->error, goal->error, refined->error_of_cuts);
+                  refined->now.error, goal->error, refined->now.error_of_cuts);
     else
         cli_error("an RMSE of %.3g may be left, not %.6g: there are no more than %u samples",
-                  refined->error, goal->error, refined->samples);
+                  refined->now.error, goal->error, refined->now.samples);
 }

@@ -15,12 +15,9 @@ struct refine_goal {
     double limit_ms; /* limit on the time of drawing; a step that would exceed it is not begun */
 };
 
-/* The samples and the estimated error that refining ended with. `samples` 0: --refine was not
-   given. */
+/* What refining ended with: now.samples 0: --refine was not given. */
 struct refined {
-    uint32_t samples;
-    double error, error_of_cuts; /* < 0: not known, as after one sample */
-    double cut_radiance;
+    whit_refine_info now;
     bool reached; /* whether the goal was reached */
 };
 

@@ -65,6 +65,38 @@ static const struct setting options[] = {
     {0},
 };
 
+const char *render_asks(const struct settings *settings, const struct render_request *request,
+                        const char *first, const char *last)
+{
+    const struct {
+        const char *option;
+        bool given;
+    } asks[] = {
+        {"--camera", settings_given(settings, "camera")},
+        {"--frames", request->frames.given},
+        {"--tile", request->part.tiles},
+        {"--samples-part", request->part.sets},
+        {"--resume", request->resume},
+        {"--shader", settings->shader[0]},
+        {"--stages", settings->stages[0]},
+        {"--aa adaptive", settings->picture.sampling.kind == WHIT_SAMPLING_ADAPTIVE},
+        {"--view", settings->paint != PAINT_COLOR},
+        {"--counters", request->counters},
+        {"--edges", settings->edges != EDGES_OFF},
+        {"--grid", settings->grid},
+        {"--refine", refine_is_wanted(&request->refine)},
+        {"--budget-ms", settings->budget_ms > 0.0},
+        {"--max-error", settings->max_error > 0.0},
+        {"--thumbnail", request->thumbnail},
+    };
+    size_t i = 0;
+    while (strcmp(asks[i].option, first) != 0)
+        ++i;
+    while (!asks[i].given && strcmp(asks[i].option, last) != 0)
+        ++i;
+    return asks[i].given ? asks[i].option : NULL;
+}
+
 static bool can_write(const struct render_request *request, const char *name)
 {
     char *first = request->frames.given ? frames_path(name, request->frames.first) : NULL;
@@ -271,9 +303,8 @@ static whit_result save_view(whit_renderer *renderer, const struct settings *set
     whit_result result = view_image(renderer, settings, output, &figures, &image);
     if (result != WHIT_OK)
         return result;
-    result = recipe_add_view(recipe, settings, &figures)
-                 ? whit_image_save(image, output, recipe->texts, recipe->count, &cli_log)
-                 : WHIT_ERROR_MEMORY;
+    recipe_add_view(recipe, settings, &figures);
+    result = whit_image_save(image, output, recipe->texts, recipe->count, &cli_log);
     whit_image_destroy(image);
     return result;
 }
@@ -303,10 +334,8 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     whit_device_get_info(job->device, &device);
     if (!recipe_init(&recipe, settings, job->scene, job->shader, &device, stats, request->output))
         return WHIT_ERROR_MEMORY;
-    bool part = part_is_given(&request->part);
-    if (part && !recipe_add_part(&recipe, &request->part, settings))
-        result = WHIT_ERROR_MEMORY;
-    if (result == WHIT_OK && request->ids)
+    recipe_add_part(&recipe, &request->part, settings);
+    if (request->ids)
         result = save_ids(renderer, images->ids, request->ids, &recipe);
     if (result == WHIT_OK && cli_cancel)
         result = WHIT_ERROR_CANCELLED;
@@ -322,7 +351,7 @@ whit_result render_save(const struct job *job, const struct render_request *requ
         result = images->color
                      ? save_colors(renderer, settings, request, images->color, images, &recipe)
                      : save_own_colors(renderer, settings, request, images, &recipe);
-    if (result == WHIT_OK && part && path_is(request->output, "pfm"))
+    if (result == WHIT_OK && recipe.part && path_is(request->output, "pfm"))
         result = part_save_beside(request->output, &recipe);
     recipe_finish(&recipe);
     return result;
@@ -501,9 +530,9 @@ int render_draw(struct job *job, const struct render_request *request, whit_rend
                  sequence->kept == 1 ? " was" : "s were");
     int status = stats_print(job, request, renderer, &sequence->stats, sequence->save_ms,
                              frames->given && !request->cameras.file ? sequence : NULL,
-                             refined.samples ? &refined : NULL);
-    bool missed = refined.samples && !refined.reached;
-    if (refined.samples && (missed || is_told(job)))
+                             refined.now.samples ? &refined : NULL);
+    bool missed = refined.now.samples && !refined.reached;
+    if (refined.now.samples && (missed || is_told(job)))
         refine_say(&request->refine, &refined);
     if (missed && status == EXIT_FINE)
         status = EXIT_DIFFERS;
@@ -539,10 +568,9 @@ static bool check_choice(struct cli_reader *reader, const struct settings *setti
         request->frames.given || request->ids || settings->paint != PAINT_COLOR || settings->aov[0];
     if (request->thumbnail && other)
         return cli_misuse(reader, "--thumbnail is for one picture of colours");
-    if (request->frames.given && (settings->budget_ms > 0.0 || settings->max_error > 0.0))
-        return cli_misuse(reader, "%s is for one picture of colours",
-                          settings->budget_ms > 0.0 ? "--budget-ms" : "--max-error");
-    return true;
+    const char *chosen = render_asks(settings, request, "--budget-ms", "--max-error");
+    return !request->frames.given || !chosen ||
+           cli_misuse(reader, "%s is for one picture of colours", chosen);
 }
 
 /* Reads the options first and the scene after them, because a picture may be given in its place. */

@@ -31,6 +31,11 @@ struct render_request {
     uint32_t thumbnail; /* pixels on a side, of a PNG whatever its name; 0: none */
 };
 
+/* The first option that was given of those from `first` to `last` in the list of what a request may
+   ask for beside one whole picture of colours; NULL: none. */
+const char *render_asks(const struct settings *settings, const struct render_request *request,
+                        const char *first, const char *last);
+
 /* Makes all that drawing needs: shader, scene, trees, device, renderer. Things that the job has
    already are reused; an existing *renderer, which must have the same kernels, is set to this
    picture. Errors were printed. */

@@ -7,8 +7,7 @@
 
 #include "app/arguments.h"
 #include "app/commands.h"
-#include "app/render/cameras.h"
-#include "app/render/part.h"
+#include "app/render/recipe.h"
 #include "base/input.h"
 #include "base/path.h"
 #include "base/roots.h"
@@ -34,22 +33,13 @@ const char *repeat_picture(const struct cli_reader *reader, const struct repeat 
 
 /* ---- Texts ---- */
 
-static const char *find_text(const whit_text *texts, uint32_t count, const char *key)
-{
-    for (uint32_t i = 0; i < count; ++i) {
-        if (strcmp(texts[i].key, key) == 0)
-            return texts[i].value;
-    }
-    return NULL;
-}
-
 const char *repeat_text(const char *picture, const whit_load_params *params, const char *key,
                         whit_text **texts)
 {
     uint32_t count;
     if (whit_image_load_texts(picture, params, &cli_log, texts, &count) != WHIT_OK)
         return NULL;
-    const char *text = find_text(*texts, count, key);
+    const char *text = recipe_text(*texts, count, key);
     if (text)
         return text;
     cli_error("%s: a picture without `%s` in it", picture, key);
@@ -154,7 +144,7 @@ static bool find_others(const struct recipe_read *recipe, struct settings *setti
     }
     if (!settings->shader[0])
         return true;
-    if (!find_text(recipe->texts, recipe->text_count, WHIT_SHADER_KEY)) {
+    if (!recipe_text(recipe->texts, recipe->text_count, WHIT_SHADER_KEY)) {
         cli_error("%s: the functions that it was made with are not in it", recipe->picture);
         return false;
     }
@@ -222,7 +212,7 @@ static bool confirm(const struct recipe_read *recipe, const struct settings *set
     whit_shader_file *files = NULL;
     uint32_t count = 0;
     if (strcmp(settings->shader, recipe->picture) == 0 &&
-        whit_shader_unpack(find_text(recipe->texts, recipe->text_count, WHIT_SHADER_KEY),
+        whit_shader_unpack(recipe_text(recipe->texts, recipe->text_count, WHIT_SHADER_KEY),
                            recipe->picture, &cli_log, &files, &count) != WHIT_OK)
         return false;
     if (!yes || !settings->quiet)
@@ -240,8 +230,8 @@ static bool load(struct recipe_read *recipe, const struct job *job, struct setti
     if (whit_image_load_texts(recipe->picture, &params, &cli_log, &recipe->texts,
                               &recipe->text_count) != WHIT_OK)
         return false;
-    const char *command = find_text(recipe->texts, recipe->text_count, "whit:command");
-    if (find_text(recipe->texts, recipe->text_count, VIEW_CAMERA_KEY)) {
+    const char *command = recipe_text(recipe->texts, recipe->text_count, "whit:command");
+    if (recipe_text(recipe->texts, recipe->text_count, VIEW_CAMERA_KEY)) {
         cli_error("%s: its camera is one that --camera has no words for; " VIEW_CAMERA_KEY
                   " in its recipe is a line for a file of --cameras",
                   recipe->picture);
@@ -271,9 +261,9 @@ static bool read_over(struct recipe_read *recipe, struct job *job, struct cli_re
     job->settings = settings;
     job->settings.given = 0; /* no conflict where the command line repeats an option of the
                                 recipe */
-    const char *hash = find_text(recipe->texts, recipe->text_count, "whit:scene_hash");
+    const char *hash = recipe_text(recipe->texts, recipe->text_count, "whit:scene_hash");
     job->recipe_hash = hash ? strtoull(hash, NULL, 16) : 0;
-    const char *part = find_text(recipe->texts, recipe->text_count, PART_KEY);
+    const char *part = recipe_text(recipe->texts, recipe->text_count, PART_KEY);
     snprintf(job->recipe_part, sizeof job->recipe_part, "%s", part ? part : "");
     cli_reader_init(reader, command, argc, argv);
     if (!job_read(job, reader, own, true))

@@ -21,7 +21,6 @@ static bool has_recipe(const struct render_request *request)
 bool resume_check(struct cli_reader *reader, const struct job *job,
                   const struct render_request *request)
 {
-    const struct settings *settings = &job->settings;
     if (!request->resume)
         return true;
     if (!has_recipe(request))
@@ -29,11 +28,7 @@ bool resume_check(struct cli_reader *reader, const struct job *job,
                           "--resume: %s has no recipe that would tell whether it is finished: "
                           ".png and .exr have",
                           request->output);
-    const char *other = refine_is_wanted(&request->refine) ? "--refine"
-                        : settings->budget_ms > 0.0        ? "--budget-ms"
-                        : settings->max_error > 0.0        ? "--max-error"
-                        : request->thumbnail               ? "--thumbnail"
-                                                           : NULL;
+    const char *other = render_asks(&job->settings, request, "--refine", "--thumbnail");
     return !other ||
            cli_misuse(reader, "--resume and %s: another run may draw another picture", other);
 }
@@ -51,11 +46,8 @@ static bool decides(const char *key)
 static bool same_recipe(const struct recipe *wanted, const whit_text *texts, uint32_t count)
 {
     for (uint32_t i = 0; i < wanted->count; ++i) {
-        uint32_t k = 0;
-        while (k < count && strcmp(texts[k].key, wanted->texts[i].key) != 0)
-            ++k;
-        if (decides(wanted->texts[i].key) &&
-            (k == count || strcmp(texts[k].value, wanted->texts[i].value) != 0))
+        const char *text = recipe_text(texts, count, wanted->texts[i].key);
+        if (decides(wanted->texts[i].key) && (!text || strcmp(text, wanted->texts[i].value) != 0))
             return false;
     }
     return true;
@@ -91,15 +83,11 @@ static whit_result find_finished(const struct job *job, const struct render_requ
     if (!recipe_init(&wanted, &job->settings, job->scene, job->shader, &device, &stats,
                      single->output))
         return WHIT_ERROR_MEMORY;
-    bool part = part_is_given(&single->part);
-    whit_result result = !part || recipe_add_part(&wanted, &single->part, &job->settings)
-                             ? WHIT_OK
-                             : WHIT_ERROR_MEMORY;
-    if (result == WHIT_OK)
-        *finished = is_finished(job, single->output, &wanted) &&
-                    (!single->ids || is_finished(job, single->ids, &wanted));
+    recipe_add_part(&wanted, &single->part, &job->settings);
+    *finished = is_finished(job, single->output, &wanted) &&
+                (!single->ids || is_finished(job, single->ids, &wanted));
     recipe_finish(&wanted);
-    return result == WHIT_OK ? job_still_wanted() : result;
+    return job_still_wanted();
 }
 
 whit_result resume_begin(const struct job *job, const struct render_request *single,

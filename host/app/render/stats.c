@@ -163,10 +163,10 @@ static json_t *refined_document(const struct figures *figures)
 {
     const struct refined *refined = figures->refined;
     json_t *object = document_object();
-    document_count(object, "samples", refined->samples);
-    document_number(object, "rmse_estimate", document_known(refined->error));
-    document_number(object, "rmse_estimate_of_cuts", document_known(refined->error_of_cuts));
-    document_number(object, "cut_radiance", refined->cut_radiance);
+    document_count(object, "samples", refined->now.samples);
+    document_number(object, "rmse_estimate", document_known(refined->now.error));
+    document_number(object, "rmse_estimate_of_cuts", document_known(refined->now.error_of_cuts));
+    document_number(object, "cut_radiance", refined->now.cut_radiance);
     document_count(object, "estimate_rays", figures->render->rays_of_estimate);
     document_flag(object, "reached", refined->reached);
     return object;
@@ -342,10 +342,10 @@ static void print_samples(const struct figures *figures)
 static void print_refined(const struct figures *figures)
 {
     const struct refined *refined = figures->refined;
-    printf("refined\n  %u samples a pixel", refined->samples);
-    if (refined->error >= 0.0)
-        printf(", an RMSE of %.3g may be left, %.3g of it of rays that were cut", refined->error,
-               refined->error_of_cuts);
+    printf("refined\n  %u samples a pixel", refined->now.samples);
+    if (refined->now.error >= 0.0)
+        printf(", an RMSE of %.3g may be left, %.3g of it of rays that were cut",
+               refined->now.error, refined->now.error_of_cuts);
     putchar('\n');
     if (figures->render->rays_of_estimate)
         printf("  %llu rays more, for this estimate alone\n",

@@ -181,8 +181,6 @@ static int print_json(const whit_shader *shader, const struct attempt *attempt)
     document_hash(object, "hash", info.hash);
     attempt_describe(attempt, shader, object);
     char *text = document_lines(object);
-    if (!text)
-        return cli_exit_of(WHIT_ERROR_MEMORY);
     puts(text);
     free(text);
     return attempt_status(attempt, shader);
