@@ -44,6 +44,9 @@ struct cli_command {
 /* ---- Messages ---- */
 
 void cli_error(const char *format, ...) WHIT_PRINTF(1, 2);
+/* Prints an error and gives `value`, so that it can be returned: false, a whit_result or an exit
+   code. It is a macro so that compilers see what it gives. */
+#define CLI_FAIL(value, ...) (cli_error(__VA_ARGS__), (value))
 void cli_warning(const char *format, ...) WHIT_PRINTF(1, 2);
 void cli_note(const char *format, ...) WHIT_PRINTF(1, 2);
 

@@ -203,6 +203,18 @@ json_t *document_device(const whit_device_info *info)
     return device;
 }
 
+double document_read_number(const json_t *object, const char *key, double otherwise)
+{
+    const json_t *value = json_object_get(object, key);
+    return json_is_number(value) ? json_number_value(value) : otherwise;
+}
+
+uint64_t document_read_count(const json_t *object, const char *key)
+{
+    double value = document_read_number(object, key, 0.0);
+    return value > 0.0 && value < 0x1p53 ? (uint64_t)value : 0;
+}
+
 /* Does not use json_dumps: jansson 2.14 silently drops a key that it has no memory for, while a
    stream remembers the failure. */
 static char *dump_all(const json_t *value, size_t flags)
@@ -246,6 +258,20 @@ whit_result document_save_text(char *text, const char *path)
         return cli_no_memory();
     cli_set_saving();
     whit_result result = file_write_whole(&cli_log, path, text, strlen(text));
+    free(text);
+    return result;
+}
+
+whit_result document_save_written(const char *path, void (*write)(FILE *to, const void *user),
+                                  const void *user)
+{
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *to = open_memstream(&text, &bytes);
+    if (to)
+        write(to, user);
+    whit_result result =
+        to && fclose(to) == 0 ? file_write_whole(&cli_log, path, text, bytes) : cli_no_memory();
     free(text);
     return result;
 }

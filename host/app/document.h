@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include <jansson.h>
 
@@ -43,10 +44,18 @@ void document_floats(json_t *object, const char *key, const float *values, uint3
 void document_numbers(json_t *object, const char *key, const double *values, uint32_t count);
 json_t *document_device(const whit_device_info *info); /* its name, driver and kind */
 
+/* A number of an object that was read, or `otherwise`; a whole number from 0 on, else 0. */
+double document_read_number(const json_t *object, const char *key, double otherwise);
+uint64_t document_read_count(const json_t *object, const char *key);
+
 /* Writes `value` to a file, indented, and takes it over. */
 WHIT_CHECK whit_result document_save(json_t *value, const char *path);
 /* Writes `text` to a file and frees it; `text` NULL: memory ran out before. Errors were printed. */
 WHIT_CHECK whit_result document_save_text(char *text, const char *path);
+/* Writes what `write` writes to the stream to a file. Errors were printed. */
+WHIT_CHECK whit_result document_save_written(const char *path,
+                                             void (*write)(FILE *to, const void *user),
+                                             const void *user);
 /* The text of a document: in one line, or indented as document_save writes it; free() it. Takes
    over `value`. */
 char *document_line(json_t *value);

@@ -181,6 +181,14 @@ whit_renderer_params job_picture(const struct job *job)
     return params;
 }
 
+whit_shader_info job_shader_info(const whit_shader *shader)
+{
+    whit_shader_info info = {0};
+    if (shader)
+        whit_shader_get_info(shader, &info);
+    return info;
+}
+
 uint32_t job_functions(const whit_shader_info *shader, const char *names[WHIT_HOOKS])
 {
     uint32_t count = 0;

@@ -3,9 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/cli.h"
-#include "base/file.h"
-
 /* Appends base64 (RFC 4648) to `to`. */
 static void put_base64(FILE *to, const uint8_t *data, size_t size_bytes)
 {
@@ -35,33 +32,31 @@ void page_put_png(json_t *object, const char *key, const uint8_t *data, size_t s
     free(uri);
 }
 
-/* Writes JSON into an HTML element: each `<` is escaped, as `</script>` in a text would end the
-   element. */
-static void put_report(FILE *to, const char *line)
+struct page {
+    const char *html, *line;
+};
+
+/* Replaces @REPORT@. In JSON each `<` is escaped, as `</script>` in a text would end the element.
+ */
+static void put_page(FILE *to, const void *user)
 {
-    for (; *line; ++line)
-        if (*line == '<')
+    static const char mark[] = "@REPORT@";
+    const struct page *page = user;
+    const char *at = strstr(page->html, mark);
+    fwrite(page->html, 1, (size_t)(at - page->html), to);
+    for (const char *c = page->line; *c; ++c)
+        if (*c == '<')
             fputs("\\u003c", to);
         else
-            fputc(*line, to);
+            fputc(*c, to);
+    fputs(at + strlen(mark), to);
 }
 
 whit_result page_save(const char *html, json_t *document, const char *path)
 {
-    static const char mark[] = "@REPORT@";
-    const char *at = strstr(html, mark);
-    char *text = NULL;
-    size_t bytes = 0;
     char *line = document_line(document);
-    FILE *to = open_memstream(&text, &bytes);
-    if (to) {
-        fwrite(html, 1, (size_t)(at - html), to);
-        put_report(to, line);
-        fputs(at + strlen(mark), to);
-    }
-    whit_result result =
-        to && fclose(to) == 0 ? file_write_whole(&cli_log, path, text, bytes) : cli_no_memory();
-    free(text);
+    const struct page page = {html, line};
+    whit_result result = document_save_written(path, put_page, &page);
     free(line);
     return result;
 }

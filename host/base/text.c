@@ -121,6 +121,16 @@ bool text_end_line(char *line)
     return strchr(line, '\r') == NULL;
 }
 
+const char *text_number(const char *text, uint32_t max, uint32_t *out)
+{
+    uint64_t value = 0;
+    const char *at = text;
+    for (; isdigit((unsigned char)*at) && value <= max; ++at)
+        value = 10 * value + (uint64_t)(*at - '0');
+    *out = (uint32_t)value;
+    return at > text && value <= max ? at : NULL;
+}
+
 void text_add(char *text, size_t bytes, const char *format, ...)
 {
     size_t used = strlen(text);

@@ -23,6 +23,10 @@ size_t text_mark_bytes(const char *text);
 /* Cuts the carriage return with which a line of text may end. False: there is another one in it. */
 bool text_end_line(char *line);
 
+/* Reads the digits that `text` begins with; gives the text behind them. NULL: there are none, or
+   the number is above `max`. */
+const char *text_number(const char *text, uint32_t max, uint32_t *out);
+
 /* Appends to `text`, which lies in a buffer of `bytes`. What does not fit is cut. */
 void text_add(char *text, size_t bytes, const char *format, ...) WHIT_PRINTF(3, 4);
 
