@@ -121,20 +121,20 @@ static whit_result find_places(struct lines *lines)
 static int compare_places(const void *a, const void *b)
 {
     const struct line_place *x = a, *y = b;
-    for (int i = 0; i < LINE_GROUPS; ++i) {
-        if (x->group[i] != y->group[i])
-            return x->group[i] < y->group[i] ? -1 : 1;
-    }
+    if (x->scene != y->scene)
+        return x->scene < y->scene ? -1 : 1;
+    if (x->kernel != y->kernel)
+        return x->kernel < y->kernel ? -1 : 1;
     return x->number < y->number ? -1 : 1;
 }
 
-/* Puts the line into its group, that of the first line with this hash, so that groups sort by their
+/* Finds the first line with this hash, of those up to line `number`, so that groups sort by their
    first line in the file. False: out of memory. */
-static bool find_group(struct lines *lines, uint64_t hash, struct line_place *place, int group)
+static bool find_first(struct lines *lines, uint64_t hash, uint32_t number, uint32_t *first)
 {
-    place->group[group] = place->number;
-    return key_table_find(&lines->groups, &hash, sizeof hash, &place->group[group]) ||
-           key_table_add(&lines->groups, &hash, sizeof hash, place->number);
+    *first = number;
+    return key_table_find(&lines->groups, &hash, sizeof hash, first) ||
+           key_table_add(&lines->groups, &hash, sizeof hash, number);
 }
 
 int lines_init(struct lines *lines, struct line *line)
@@ -151,10 +151,12 @@ int lines_init(struct lines *lines, struct line *line)
         struct line_place *place = &lines->places[i];
         if (!line_read(line, lines, place))
             return EXIT_USAGE;
-        lines->compile |= settings_compiles(&line->job.settings);
-        if (!find_group(lines, settings_hash_scene(&line->job.settings), place, LINE_SCENE) ||
-            !find_group(lines, settings_hash_kernel(&line->job.settings), place, LINE_KERNEL) ||
-            !outputs_add(&lines->outputs, &line->request, place->number))
+        const struct settings *settings = &line->job.settings;
+        uint32_t number = place->number;
+        lines->compile |= settings_compiles(settings);
+        if (!find_first(lines, settings_hash_scene(settings), number, &place->scene) ||
+            !find_first(lines, settings_hash_kernel(settings), number, &place->kernel) ||
+            !outputs_add(&lines->outputs, &line->request, number))
             return cli_exit_of(cli_no_memory());
     }
     if (!outputs_check(&lines->outputs, lines->path))
@@ -167,10 +169,9 @@ int lines_init(struct lines *lines, struct line *line)
 
 bool lines_share_scene(const struct lines *lines, const struct line_place *place)
 {
-    const uint32_t *own = place->group;
     for (uint32_t i = 0; i < lines->count; ++i) {
-        const uint32_t *other = lines->places[i].group;
-        if (other[LINE_SCENE] == own[LINE_SCENE] && other[LINE_KERNEL] != own[LINE_KERNEL])
+        const struct line_place *other = &lines->places[i];
+        if (other->scene == place->scene && other->kernel != place->kernel)
             return true;
     }
     return false;

@@ -7,13 +7,12 @@
 
 enum { LINE_BYTES_MAX = 64 << 10 };
 
-/* Lines are grouped by their scene, and within one scene by their trees and kernels. */
-enum { LINE_SCENE, LINE_KERNEL, LINE_GROUPS };
-
 /* A line of the text: `bytes` bytes from byte `at` on, without its end. */
 struct line_place {
     size_t at, bytes;
-    uint32_t group[LINE_GROUPS]; /* the number of the first line of its group, by each LINE_* */
+    /* Lines are grouped by their scene, and within one scene by their trees and kernels: the
+       numbers of the first lines of these groups. */
+    uint32_t scene, kernel;
     uint32_t number;
     bool left; /* it is still to be drawn */
 };

@@ -1,6 +1,5 @@
 #include "app/batch/outputs.h"
 
-#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,9 +96,8 @@ bool outputs_check(struct outputs *outputs, const char *path)
         if (same_key && one->first <= last->last) {
             const struct output *later = last->line > one->line ? last : one;
             const struct output *earlier = later == last ? one : last;
-            cli_error("%s:%u: its %s is the %s of line %u", path, later->line, later->option,
-                      earlier->option, earlier->line);
-            return false;
+            return CLI_FAIL(false, "%s:%u: its %s is the %s of line %u", path, later->line,
+                            later->option, earlier->option, earlier->line);
         }
         last = same_key && one->last <= last->last ? last : one;
     }

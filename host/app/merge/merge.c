@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "app/render/recipe.h"
-#include "base/path.h"
 
 /* ---- Recipes ---- */
 
@@ -24,10 +23,10 @@ static whit_result read_part(struct merge_part *part, const char *path,
     const char *line = text_of(part, PART_KEY);
     if (line && part_of_line(line, &part->place))
         return WHIT_OK;
-    cli_error("%s: %s", path,
-              line ? "what it says of its part is damaged"
-                   : "no part of a picture: `whit render --tile` and `--samples-part` make these");
-    return WHIT_ERROR_INPUT;
+    return CLI_FAIL(
+        WHIT_ERROR_INPUT, "%s: %s", path,
+        line ? "what it says of its part is damaged"
+             : "no part of a picture: `whit render --tile` and `--samples-part` make these");
 }
 
 whit_result merge_read(struct merge *merge, const char *const *paths, uint32_t count,
@@ -80,8 +79,8 @@ static whit_result check_same(const struct merge_part *a, const struct merge_par
         what = "sizes or samples";
     if (!what)
         return WHIT_OK;
-    cli_error("%s and %s are of different %s: not parts of one picture", a->path, b->path, what);
-    return WHIT_ERROR_INPUT;
+    return CLI_FAIL(WHIT_ERROR_INPUT, "%s and %s are of different %s: not parts of one picture",
+                    a->path, b->path, what);
 }
 
 static int compare_parts(const void *a, const void *b)
@@ -115,20 +114,8 @@ static whit_result check_whole(struct merge *merge, uint32_t sets)
         return WHIT_OK;
     if (missing > SHOWN)
         snprintf(list + strlen(list), sizeof list - strlen(list), "; and %u more", missing - SHOWN);
-    cli_error("%u of %u parts are missing: %s", missing, merge->tiles * sets, list);
-    return WHIT_ERROR_INPUT;
-}
-
-static double get_number(const json_t *object, const char *key)
-{
-    const json_t *value = json_object_get(object, key);
-    return json_is_number(value) ? json_number_value(value) : -1.0;
-}
-
-static uint64_t get_rays(const json_t *rays, const char *key)
-{
-    double number = get_number(rays, key);
-    return number > 0.0 ? (uint64_t)number : 0;
+    return CLI_FAIL(WHIT_ERROR_INPUT, "%u of %u parts are missing: %s", missing,
+                    merge->tiles * sets, list);
 }
 
 /* Adds a part's counters. The error bound of the picture is the largest of its tiles; that of a
@@ -138,15 +125,15 @@ static void add_counters(struct merge *merge, const struct merge_part *part, dou
     const char *line = text_of(part, "whit:counters");
     json_t *object = json_loads(line ? line : "", 0, NULL), *rays = json_object_get(object, "rays");
     whit_stats *stats = &merge->stats;
-    stats->rays_primary += get_rays(rays, "primary");
-    stats->rays_shadow += get_rays(rays, "shadow");
-    stats->rays_reflected += get_rays(rays, "reflected");
-    stats->rays_refracted += get_rays(rays, "refracted");
-    stats->rays_straight += get_rays(rays, "straight");
-    stats->rays_by_functions += get_rays(rays, "by_functions");
-    stats->rays_cut_depth += get_rays(rays, "cut_by_depth");
-    stats->rays_cut_bailout += get_rays(rays, "cut_by_bailout");
-    double bound = get_number(object, "bailout_bound");
+    stats->rays_primary += document_read_count(rays, "primary");
+    stats->rays_shadow += document_read_count(rays, "shadow");
+    stats->rays_reflected += document_read_count(rays, "reflected");
+    stats->rays_refracted += document_read_count(rays, "refracted");
+    stats->rays_straight += document_read_count(rays, "straight");
+    stats->rays_by_functions += document_read_count(rays, "by_functions");
+    stats->rays_cut_depth += document_read_count(rays, "cut_by_depth");
+    stats->rays_cut_bailout += document_read_count(rays, "cut_by_bailout");
+    double bound = document_read_number(object, "bailout_bound", -1.0);
     *bounds = bound >= 0.0 && *bounds >= 0.0 ? *bounds + bound / merge->sets : -1.0;
     json_decref(object);
 }
@@ -221,8 +208,8 @@ whit_result merge_check(struct merge *merge)
         const struct merge_part *a = &merge->parts[i - 1], *b = &merge->parts[i];
         if (compare_parts(a, b) != 0)
             continue;
-        cli_error("%s and %s are both %s", a->path, b->path, part_name(&b->place.part, name));
-        return WHIT_ERROR_INPUT;
+        return CLI_FAIL(WHIT_ERROR_INPUT, "%s and %s are both %s", a->path, b->path,
+                        part_name(&b->place.part, name));
     }
     merge->tiles = given->tiles ? given->tiles : 1;
     merge->sets = given->sets ? given->sets : 1;
@@ -244,10 +231,9 @@ static whit_result add_up(const struct merge_part *part, whit_image *image, cons
     whit_image_info a, b;
     whit_image_get_info(image, &a);
     whit_image_get_info(other, &b);
-    if (a.channels != b.channels || a.integers || b.integers) {
-        cli_error("%s: other channels than the parts before it", part->path);
-        return WHIT_ERROR_INPUT;
-    }
+    if (a.channels != b.channels || a.integers || b.integers)
+        return CLI_FAIL(WHIT_ERROR_INPUT, "%s: other channels than the parts before it",
+                        part->path);
     float *sums = whit_image_edit(image);
     const float *more = whit_image_floats(other);
     for (size_t i = 0; i < (size_t)a.width * a.height; ++i) {
@@ -285,12 +271,10 @@ static whit_result merge_tile(const struct merge *merge, uint32_t tile, whit_ima
         return result;
     whit_image_get_info(*out, &info);
     bool colours = !info.integers && info.channels >= 3;
-    if (info.integers != merge->ids || !(colours || info.integers)) {
-        cli_error("%s: %s, where parts before it hold %s", parts->path,
-                  info.integers ? "hit identities" : "colours or numbers",
-                  merge->ids ? "hit identities" : "colours");
-        return WHIT_ERROR_INPUT;
-    }
+    if (info.integers != merge->ids || !(colours || info.integers))
+        return CLI_FAIL(WHIT_ERROR_INPUT, "%s: %s, where parts before it hold %s", parts->path,
+                        info.integers ? "hit identities" : "colours or numbers",
+                        merge->ids ? "hit identities" : "colours");
     if (colours && parts->place.part.sets)
         part_scale(1.0f / (float)parts->place.samples, *out);
     return WHIT_OK;

@@ -1,4 +1,3 @@
-#include <stdlib.h>
 #include <string.h>
 
 #include "app/arguments.h"
@@ -24,16 +23,9 @@ static const struct setting options[] = {
     {0},
 };
 
-static bool same_kind(const char *a, const char *b)
-{
-    char one[8], other[8];
-    path_extension(a, one, sizeof one);
-    path_extension(b, other, sizeof other);
-    return strcmp(one, other) == 0;
-}
-
 static bool check_request(struct cli_reader *reader, struct merge_request *request)
 {
+    char extension[16];
     if (!reader->positional)
         return cli_misuse(reader, "parts of a picture are missing");
     request->paths[request->count++] = reader->positional;
@@ -41,8 +33,9 @@ static bool check_request(struct cli_reader *reader, struct merge_request *reque
         request->paths[request->count++] = reader->others[i];
     if (!request->output)
         return cli_misuse(reader, "-o FILE is missing: where should the picture go?");
+    path_extension(request->output, extension, sizeof extension);
     for (uint32_t i = 0; i < request->count; ++i) {
-        if (!same_kind(request->paths[i], request->output))
+        if (!path_is(request->paths[i], extension))
             return cli_misuse(reader,
                               "%s and %s: the picture is a file of its parts' kind, which alone "
                               "has all that they hold",
