@@ -169,11 +169,11 @@ static whit_result save_all(const struct cost *cost)
 {
     whit_result result = WHIT_OK;
     if (cost->json)
-        result = cost_save_json(cost, cost->json);
+        result = document_save(cost_document(cost->report, cost), cost->json);
     if (result == WHIT_OK && cost->csv)
-        result = cost_save_csv(cost);
+        result = document_save_written(cost->csv, cost_write_csv, cost);
     if (result == WHIT_OK && cost->markdown)
-        result = cost_save_markdown(cost);
+        result = document_save_written(cost->markdown, cost_write_markdown, cost);
     if (result == WHIT_OK && cost->html)
         result = cost_save_page(cost);
     return result;

@@ -15,9 +15,11 @@ static const struct cost_row *find(const struct cost_report *report, const struc
     return NULL;
 }
 
-/* The time of the usual picture in ms; the other rows have ratios to it instead. */
-static struct sample_median full_time(const struct cost_report *report, const struct cost_row *row)
+/* The time of the usual picture in ms; of other rows their ratio to it. */
+static struct sample_median time_of(const struct cost_report *report, const struct cost_row *row)
 {
+    if (row != &report->rows[0])
+        return row->price.ratio[report->clock];
     return (struct sample_median){.median = row->ms[report->clock],
                                   .low = row->ms_low,
                                   .high = row->ms_high,
@@ -27,15 +29,8 @@ static struct sample_median full_time(const struct cost_report *report, const st
 static const char *verdict_of(const struct cost_report *a, const struct cost_row *x,
                               const struct cost_report *b, const struct cost_row *y)
 {
-    bool is_usual = x == &a->rows[0];
-    const struct sample_median *before = &x->price.ratio[a->clock],
-                               *after = &y->price.ratio[b->clock];
-    const struct sample_median usual[2] = {full_time(a, x), full_time(b, y)};
-    if (is_usual) {
-        before = &usual[0];
-        after = &usual[1];
-    }
-    int verdict = sample_compare_apart(after, before);
+    const struct sample_median before = time_of(a, x), after = time_of(b, y);
+    int verdict = sample_compare_apart(&after, &before);
     return verdict > 0 ? "dearer in B" : verdict < 0 ? "cheaper in B" : "not distinguishable";
 }
 

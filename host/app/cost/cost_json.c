@@ -10,19 +10,16 @@
 
 /* ---- Writing ---- */
 
-static json_t *median_document(const struct sample_median *median)
+static void put_median(json_t *out, const struct sample_median *median)
 {
-    json_t *out = document_object();
     document_number(out, "median", median->median);
     document_number(out, "low", median->low);
     document_number(out, "high", median->high);
     document_number(out, "coverage", median->coverage);
-    return out;
 }
 
-static json_t *price_document(const struct cost_price *price)
+static void put_price(json_t *out, const struct cost_price *price)
 {
-    json_t *out = document_object();
     document_count(out, "rounds", price->rounds);
     document_count(out, "width", price->width);
     document_count(out, "height", price->height);
@@ -34,12 +31,11 @@ static json_t *price_document(const struct cost_price *price)
             continue;
         }
         json_t *clock = document_child(out, name);
-        document_put(clock, "usual_ms", median_document(&price->usual_ms[c]));
-        document_put(clock, "setting_ms", median_document(&price->setting_ms[c]));
-        document_put(clock, "difference_ms", median_document(&price->difference[c]));
-        document_put(clock, "ratio", median_document(&price->ratio[c]));
+        put_median(document_child(clock, "usual_ms"), &price->usual_ms[c]);
+        put_median(document_child(clock, "setting_ms"), &price->setting_ms[c]);
+        put_median(document_child(clock, "difference_ms"), &price->difference[c]);
+        put_median(document_child(clock, "ratio"), &price->ratio[c]);
     }
-    return out;
 }
 
 static json_t *difference_document(const whit_difference *difference)
@@ -79,9 +75,8 @@ static json_t *hits_document(const struct cost_hits *hits)
     return out;
 }
 
-static json_t *row_document(const struct cost_row *row)
+static void put_row(json_t *out, const struct cost_row *row)
 {
-    json_t *out = document_object();
     document_text(out, "knob", row->knob);
     document_text(out, "setting", row->setting);
     document_text(out, "option", row->option);
@@ -98,7 +93,7 @@ static json_t *row_document(const struct cost_row *row)
     document_number(out, "ms_low", row->ms_low);
     document_number(out, "ms_high", row->ms_high);
     document_number(out, "build_ms", document_known(row->build_ms));
-    document_put(out, "price", price_document(&row->price));
+    put_price(document_child(out, "price"), &row->price);
     document_put(out, "error", difference_document(&row->error));
     document_put(out, "alone", difference_document(&row->alone));
     document_count(out, "pixels_changed", row->pixels_changed);
@@ -106,12 +101,11 @@ static json_t *row_document(const struct cost_row *row)
     for (uint32_t set = 0; set < COST_SETS; ++set)
         document_put(out, set == COST_AIMED ? "aimed_rays" : "picture_rays",
                      hits_document(&row->hits[set]));
-    return out;
 }
 
-static json_t *answer_document(const struct cost_report *report, const struct cost_answer *answer)
+static void put_answer(json_t *out, const struct cost_report *report,
+                       const struct cost_answer *answer)
 {
-    json_t *out = document_object();
     document_text(out, "goal", answer->goal.kind == COST_WITHIN ? "within_ms" : "under");
     document_text(out, "metric", cost_metric_name(answer->goal.metric));
     document_number(out, "limit", answer->goal.limit);
@@ -128,10 +122,8 @@ static json_t *answer_document(const struct cost_report *report, const struct co
     document_text(out, "options",
                   answer->found && answer->row != WHIT_NONE ? report->rows[answer->row].option
                                                             : NULL);
-    return out;
 }
 
-/* `cost`: the request; NULL: the report is kept for choices, which need no request. */
 static void put_head(json_t *out, const struct cost_report *report, const struct cost *cost)
 {
     document_text(out, "command", cost ? cost->command : NULL);
@@ -155,9 +147,8 @@ static void put_head(json_t *out, const struct cost_report *report, const struct
     document_number(out, "small_ms", report->small_ms);
 }
 
-static json_t *reference_document(const struct cost_report *report)
+static void put_reference(json_t *out, const struct cost_report *report)
 {
-    json_t *out = document_object();
     document_count(out, "samples", report->reference_samples);
     document_count(out, "depth", report->reference_depth);
     document_count(out, "light_samples", report->reference_light_samples);
@@ -166,7 +157,6 @@ static json_t *reference_document(const struct cost_report *report)
                     report->reference_cached[0] ? (double)NAN : report->reference_ms[0]);
     document_number(out, "all_samples_ms",
                     report->reference_cached[1] ? (double)NAN : report->reference_ms[1]);
-    return out;
 }
 
 /* Adds the sentence that sums up the report, and the findings that it is made of. */
@@ -185,18 +175,18 @@ static void put_findings(json_t *out, const struct cost_report *report)
     }
 }
 
-static json_t *report_document(const struct cost_report *report, const struct cost *cost)
+json_t *cost_document(const struct cost_report *report, const struct cost *cost)
 {
     json_t *out = document_root();
     put_head(out, report, cost);
     put_findings(out, report);
-    document_put(out, "reference", reference_document(report));
+    put_reference(document_child(out, "reference"), report);
     json_t *rows = document_list(out, "rows");
     for (uint32_t i = 0; i < report->row_count; ++i)
-        document_append(rows, row_document(&report->rows[i]));
+        put_row(document_entry(rows), &report->rows[i]);
     json_t *answers = document_list(out, "answers");
     for (uint32_t i = 0; i < report->answer_count; ++i)
-        document_append(answers, answer_document(report, &report->answers[i]));
+        put_answer(document_entry(answers), report, &report->answers[i]);
     json_t *absent = document_list(out, "not_here");
     for (uint32_t i = 0; i < report->absent_count; ++i) {
         json_t *entry = document_entry(absent);
@@ -206,34 +196,7 @@ static json_t *report_document(const struct cost_report *report, const struct co
     return out;
 }
 
-json_t *cost_document(const struct cost *cost)
-{
-    return report_document(cost->report, cost);
-}
-
-whit_result cost_save_json(const struct cost *cost, const char *path)
-{
-    return document_save(cost_document(cost), path);
-}
-
-json_t *cost_report_document(const struct cost_report *report)
-{
-    return report_document(report, NULL);
-}
-
 /* ---- Reading ---- */
-
-static double number(const json_t *object, const char *key, double otherwise)
-{
-    const json_t *value = json_object_get(object, key);
-    return json_is_number(value) ? json_number_value(value) : otherwise;
-}
-
-static uint64_t whole(const json_t *object, const char *key)
-{
-    double value = number(object, key, 0.0);
-    return value > 0.0 && value < 0x1p53 ? (uint64_t)value : 0;
-}
 
 static void text(const json_t *object, const char *key, char *out, size_t out_bytes)
 {
@@ -243,19 +206,19 @@ static void text(const json_t *object, const char *key, char *out, size_t out_by
 
 static struct sample_median read_median(const json_t *object, uint32_t count)
 {
-    return (struct sample_median){.median = number(object, "median", 0.0),
-                                  .low = number(object, "low", 0.0),
-                                  .high = number(object, "high", 0.0),
-                                  .coverage = number(object, "coverage", 0.0),
+    return (struct sample_median){.median = document_read_number(object, "median", 0.0),
+                                  .low = document_read_number(object, "low", 0.0),
+                                  .high = document_read_number(object, "high", 0.0),
+                                  .coverage = document_read_number(object, "coverage", 0.0),
                                   .count = count};
 }
 
 static void read_price(const json_t *object, struct cost_price *price)
 {
-    price->rounds = (uint32_t)whole(object, "rounds");
-    price->width = (uint32_t)whole(object, "width");
-    price->height = (uint32_t)whole(object, "height");
-    double verdict = number(object, "verdict", 0.0);
+    price->rounds = (uint32_t)document_read_count(object, "rounds");
+    price->width = (uint32_t)document_read_count(object, "width");
+    price->height = (uint32_t)document_read_count(object, "height");
+    double verdict = document_read_number(object, "verdict", 0.0);
     price->verdict = (verdict > 0.0) - (verdict < 0.0);
     for (uint32_t c = 0; c < COST_CLOCKS; ++c) {
         const json_t *clock = json_object_get(object, cost_clock_name((enum cost_clock)c));
@@ -270,31 +233,31 @@ static void read_price(const json_t *object, struct cost_price *price)
 
 static void read_difference(const json_t *object, whit_difference *difference)
 {
-    difference->pixel_count = whole(object, "pixels");
-    difference->rmse = number(object, "rmse", 0.0);
-    difference->relative_mse = number(object, "relative_mse", 0.0);
-    difference->largest = number(object, "largest", 0.0);
-    difference->over_1_255 = whole(object, "over_1_255");
-    difference->flip_mean = number(object, "flip", 0.0);
-    difference->nonfinite_b = whole(object, "non_finite");
+    difference->pixel_count = document_read_count(object, "pixels");
+    difference->rmse = document_read_number(object, "rmse", 0.0);
+    difference->relative_mse = document_read_number(object, "relative_mse", 0.0);
+    difference->largest = document_read_number(object, "largest", 0.0);
+    difference->over_1_255 = document_read_count(object, "over_1_255");
+    difference->flip_mean = document_read_number(object, "flip", 0.0);
+    difference->nonfinite_b = document_read_count(object, "non_finite");
 }
 
 static void read_hits(const json_t *object, struct cost_hits *hits)
 {
     hits->traced = json_is_object(object);
     hits->unanswered = json_is_true(json_object_get(object, "unanswered"));
-    hits->judged.tally.rays = whole(object, "rays");
-    hits->judged.tally.wrong = whole(object, "wrong");
-    hits->judged.tally.leaks = whole(object, "leaks");
-    hits->judged.tally.misses = whole(object, "misses");
-    hits->judged.tally.false_hits = whole(object, "false_hits");
-    hits->judged.tally.other_ids = whole(object, "other_ids");
-    hits->judged.non_finite = whole(object, "non_finite");
-    hits->judged.ulp_rays = whole(object, "ulp_rays");
-    hits->judged.ulp_median = number(object, "ulp_median", 0.0);
-    hits->judged.ulp_999 = number(object, "ulp_999", 0.0);
-    hits->judged.ulp_max = number(object, "ulp_max", 0.0);
-    hits->ms = number(object, "ms", -1.0);
+    hits->judged.tally.rays = document_read_count(object, "rays");
+    hits->judged.tally.wrong = document_read_count(object, "wrong");
+    hits->judged.tally.leaks = document_read_count(object, "leaks");
+    hits->judged.tally.misses = document_read_count(object, "misses");
+    hits->judged.tally.false_hits = document_read_count(object, "false_hits");
+    hits->judged.tally.other_ids = document_read_count(object, "other_ids");
+    hits->judged.non_finite = document_read_count(object, "non_finite");
+    hits->judged.ulp_rays = document_read_count(object, "ulp_rays");
+    hits->judged.ulp_median = document_read_number(object, "ulp_median", 0.0);
+    hits->judged.ulp_999 = document_read_number(object, "ulp_999", 0.0);
+    hits->judged.ulp_max = document_read_number(object, "ulp_max", 0.0);
+    hits->ms = document_read_number(object, "ms", -1.0);
 }
 
 /* Finds the knob and setting by the names in `row`, or neither of the two. */
@@ -323,12 +286,12 @@ static void read_row(const json_t *object, struct cost_row *row)
     row->broken = json_is_true(json_object_get(object, "broken"));
     row->best = json_is_true(json_object_get(object, "best"));
     for (uint32_t c = 0; c < COST_CLOCKS; ++c)
-        row->ms[c] = number(object, keys[c], -1.0);
-    row->ms_low = number(object, "ms_low", 0.0);
-    row->ms_high = number(object, "ms_high", 0.0);
-    row->build_ms = number(object, "build_ms", -1.0);
-    row->pixels_changed = whole(object, "pixels_changed");
-    row->ids_changed = whole(object, "ids_changed");
+        row->ms[c] = document_read_number(object, keys[c], -1.0);
+    row->ms_low = document_read_number(object, "ms_low", 0.0);
+    row->ms_high = document_read_number(object, "ms_high", 0.0);
+    row->build_ms = document_read_number(object, "build_ms", -1.0);
+    row->pixels_changed = document_read_count(object, "pixels_changed");
+    row->ids_changed = document_read_count(object, "ids_changed");
     read_price(json_object_get(object, "price"), &row->price);
     read_difference(json_object_get(object, "error"), &row->error);
     read_difference(json_object_get(object, "alone"), &row->alone);
@@ -349,14 +312,15 @@ static void read_report(const json_t *root, struct cost_report *report, char **s
     text(root, "clock", clock, sizeof clock);
     report->scene_hash = strtoull(hash, NULL, 16);
     report->complete = json_is_true(json_object_get(root, "complete"));
-    report->spent_ms = number(root, "seconds", 0.0) * 1e3;
-    report->width = (uint32_t)whole(root, "width");
-    report->height = (uint32_t)whole(root, "height");
-    report->judged_width = (uint32_t)whole(root, "judged_width");
-    report->judged_height = (uint32_t)whole(root, "judged_height");
-    report->usual_ms_max = number(root, "usual_ms_max", 0.0);
-    report->small_ms = number(root, "small_ms", 0.0);
-    report->reference_samples = (uint32_t)whole(json_object_get(root, "reference"), "samples");
+    report->spent_ms = document_read_number(root, "seconds", 0.0) * 1e3;
+    report->width = (uint32_t)document_read_count(root, "width");
+    report->height = (uint32_t)document_read_count(root, "height");
+    report->judged_width = (uint32_t)document_read_count(root, "judged_width");
+    report->judged_height = (uint32_t)document_read_count(root, "judged_height");
+    report->usual_ms_max = document_read_number(root, "usual_ms_max", 0.0);
+    report->small_ms = document_read_number(root, "small_ms", 0.0);
+    report->reference_samples =
+        (uint32_t)document_read_count(json_object_get(root, "reference"), "samples");
     for (uint32_t c = 0; c < COST_CLOCKS; ++c)
         if (strcmp(clock, cost_clock_name((enum cost_clock)c)) == 0)
             report->clock = (enum cost_clock)c;
@@ -369,10 +333,9 @@ static void read_report(const json_t *root, struct cost_report *report, char **s
         *scene = name ? strdup(name) : NULL;
 }
 
-/* Takes over `root`. */
-static bool read_known(json_t *root, struct cost_report *report, char **scene)
+bool cost_read(json_t *root, struct cost_report *report, char **scene)
 {
-    bool known = root && number(root, "format", 0.0) == DOCUMENT_FORMAT &&
+    bool known = root && document_read_number(root, "format", 0.0) == DOCUMENT_FORMAT &&
                  json_is_array(json_object_get(root, "rows")) &&
                  json_array_size(json_object_get(root, "rows")) > 0;
     *report = (struct cost_report){0};
@@ -390,14 +353,9 @@ bool cost_load_json(const char *path, struct cost_report *report, char **scene)
         cli_error("%s: cannot read: %s", path, strerror(errno));
     else if (!root)
         cli_error("%s:%d: %s", path, error.line, error.text);
-    else if (!read_known(root, report, scene))
+    else if (!cost_read(root, report, scene))
         cli_error("%s: this is no report of `whit cost --json`", path);
     else
         return true;
     return false;
-}
-
-bool cost_report_read(json_t *root, struct cost_report *report)
-{
-    return read_known(root, report, NULL);
 }

@@ -4,14 +4,13 @@
 
 #include "app/cost/cost.h"
 
-json_t *cost_document(const struct cost *cost);
-whit_result cost_save_json(const struct cost *cost, const char *path);
-/* Reads a file of cost_save_json, for comparisons: without pictures. `scene` gets the name of its
+/* `cost`: the request; NULL: the report is kept for choices, which need no request. */
+json_t *cost_document(const struct cost_report *report, const struct cost *cost);
+/* Reads a file of such a document, for comparisons: without pictures. `scene` gets the name of its
    scene, which the caller frees. False, with a message: it is no such file. */
 bool cost_load_json(const char *path, struct cost_report *report, char **scene);
-/* As above, for a report inside another document. The second takes over `root`; NULL is no
-   report. */
-json_t *cost_report_document(const struct cost_report *report);
-bool cost_report_read(json_t *root, struct cost_report *report);
+/* As above, for a document inside another one: takes over `root`; NULL is no report. `scene` may be
+   NULL. */
+bool cost_read(json_t *root, struct cost_report *report, char **scene);
 
 #endif

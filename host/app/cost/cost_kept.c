@@ -1,7 +1,6 @@
 /* A record in whit's cache for --budget-ms and --max-error: the measured figures of a scene, and
    the choices made by them, so that the next run makes the same choice. */
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -54,9 +53,8 @@ void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice
 
 /* ---- Writing ---- */
 
-static json_t *choice_document(const struct cost_kept_choice *kept)
+static void put_choice(json_t *out, const struct cost_kept_choice *kept)
 {
-    json_t *out = document_object();
     uint32_t count;
     const struct knob *table = knob_table(&count);
     document_number(out, "budget_ms", kept->budget_ms);
@@ -70,7 +68,6 @@ static json_t *choice_document(const struct cost_kept_choice *kept)
     for (uint32_t k = 0; k < count; ++k)
         document_text(settings, table[k].name,
                       knob_setting_name(&table[k], kept->choice.settings[k]));
-    return out;
 }
 
 void cost_kept_save(const struct cost_kept *kept, const char *name)
@@ -79,10 +76,10 @@ void cost_kept_save(const struct cost_kept *kept, const char *name)
         return;
     json_t *root = document_root();
     document_text(root, "made", kept->made);
-    document_put(root, "figures", cost_report_document(&kept->report));
+    document_put(root, "figures", cost_document(&kept->report, NULL));
     json_t *choices = document_list(root, "choices");
     for (uint32_t i = 0; i < kept->choice_count; ++i)
-        document_append(choices, choice_document(&kept->choices[i]));
+        put_choice(document_entry(choices), &kept->choices[i]);
     char *text = document_line(root);
     store_write(&cli_log, name, text, strlen(text));
     free(text);
@@ -95,10 +92,10 @@ static bool read_choice(const json_t *object, struct cost_kept_choice *kept)
     uint32_t count;
     const struct knob *table = knob_table(&count);
     const json_t *settings = json_object_get(object, "settings");
-    kept->budget_ms = json_number_value(json_object_get(object, "budget_ms"));
-    kept->tried_ms = json_number_value(json_object_get(object, "tried_ms"));
-    kept->choice.ms = json_number_value(json_object_get(object, "predicted_ms"));
-    kept->choice.error = json_number_value(json_object_get(object, "predicted_error"));
+    kept->budget_ms = document_read_number(object, "budget_ms", 0.0);
+    kept->tried_ms = document_read_number(object, "tried_ms", 0.0);
+    kept->choice.ms = document_read_number(object, "predicted_ms", 0.0);
+    kept->choice.error = document_read_number(object, "predicted_error", 0.0);
     json_int_t samples = json_integer_value(json_object_get(object, "samples"));
     for (uint32_t k = 0; k < count; ++k) {
         const char *text = json_string_value(json_object_get(settings, table[k].name));
@@ -110,8 +107,8 @@ static bool read_choice(const json_t *object, struct cost_kept_choice *kept)
         kept->choice.settings[k] = (uint8_t)s;
     }
     kept->choice.samples = (uint32_t)samples;
-    kept->choice.contrast = json_number_value(json_object_get(object, "contrast"));
-    kept->choice.bailout = json_number_value(json_object_get(object, "bailout"));
+    kept->choice.contrast = document_read_number(object, "contrast", 0.0);
+    kept->choice.bailout = document_read_number(object, "bailout", 0.0);
     kept->choice.found = true;
     return kept->budget_ms > 0.0 && kept->choice.contrast >= 0.0 && kept->choice.contrast <= 1.0 &&
            samples >= 1 && samples <= WHIT_SAMPLES_MAX;
@@ -125,7 +122,7 @@ static bool read_kept(json_t *root, struct cost_kept *kept)
     const char *made = json_string_value(json_object_get(root, "made"));
     size_t i;
     *kept = (struct cost_kept){0};
-    bool good = cost_report_read(figures, &kept->report) && kept->report.complete && made;
+    bool good = cost_read(figures, &kept->report, NULL) && kept->report.complete && made;
     snprintf(kept->made, sizeof kept->made, "%s", made ? made : "");
     json_array_foreach(choices, i, choice)
     {

@@ -32,44 +32,37 @@ static json_t *picture_document(const struct cost_row *row, bool usual)
     return out;
 }
 
-static json_t *crop_document(const struct cost_report *report)
+static void put_crop(json_t *out, const struct cost_report *report)
 {
     const struct cost_crop crop = cost_crop(report);
-    json_t *out = document_object();
     document_count(out, "x", crop.x);
     document_count(out, "y", crop.y);
     document_count(out, "width", crop.width);
     document_count(out, "height", crop.height);
-    return out;
 }
 
 /* ---- The page ---- */
 
 static void say_text(void *user, const char *sentence)
 {
-    json_t *holder = document_object();
-    document_text(holder, "text", sentence);
-    document_append(user, json_incref(json_object_get(holder, "text")));
-    json_decref(holder);
+    document_append_text(user, sentence);
 }
 
-static json_t *page_document(const struct cost_report *report)
+static void put_page(json_t *out, const struct cost_report *report)
 {
-    json_t *out = document_object();
     if (report->reference)
         put_image(out, "reference", report->reference);
-    document_put(out, "crop", crop_document(report));
+    put_crop(document_child(out, "crop"), report);
     json_t *pictures = document_list(out, "pictures");
     for (uint32_t i = 0; i < report->row_count; ++i)
         document_append(pictures, picture_document(&report->rows[i], i == 0));
     cost_say_answers(report, say_text, document_list(out, "answers"));
     cost_say_method(report, say_text, document_list(out, "method"));
-    return out;
 }
 
 whit_result cost_save_page(const struct cost *cost)
 {
-    json_t *document = cost_document(cost);
-    document_put(document, "page", page_document(cost->report));
+    json_t *document = cost_document(cost->report, cost);
+    put_page(document_child(document, "page"), cost->report);
     return page_save(cost_page_html, document, cost->html);
 }

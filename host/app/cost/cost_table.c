@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "app/cost/cost_table.h"
-#include "base/file.h"
 #include "base/text.h"
 #include "whit/whit_program.h"
 
@@ -309,11 +308,6 @@ static void put_table(struct cost_table *table)
     memset(table->widths, 0, sizeof table->widths);
 }
 
-static bool has_hits(const struct cost_row *row)
-{
-    return row->hits[COST_CAMERA].traced || row->hits[COST_AIMED].traced;
-}
-
 static void put_tables(const struct cost_report *report, FILE *to, put_row *put_one)
 {
     struct cost_table *table = calloc(1, sizeof *table);
@@ -331,7 +325,7 @@ static void put_tables(const struct cost_report *report, FILE *to, put_row *put_
     put_table(table);
     add_head(table, cost_hit_columns, COST_HIT_COLUMNS);
     for (uint32_t i = 0; i < report->row_count; ++i) {
-        for (uint32_t set = 0; set < COST_SETS && has_hits(&report->rows[i]); ++set) {
+        for (uint32_t set = 0; set < COST_SETS; ++set) {
             fill_hits(&report->rows[i], (enum cost_set)set, &cells);
             if (report->rows[i].hits[set].traced)
                 add(table, &cells);
@@ -367,34 +361,15 @@ int cost_print_text(const struct cost *cost)
     return cli_finish_stdout(EXIT_FINE);
 }
 
-/* Saves what `write` writes as a file. */
-static whit_result save(const struct cost *cost, const char *path,
-                        void (*write)(const struct cost *cost, FILE *to))
+void cost_write_markdown(FILE *to, const void *user)
 {
-    char *text = NULL;
-    size_t bytes = 0;
-    FILE *to = open_memstream(&text, &bytes);
-    if (to)
-        write(cost, to);
-    whit_result result =
-        to && fclose(to) == 0 ? file_write_whole(&cli_log, path, text, bytes) : cli_no_memory();
-    free(text);
-    return result;
-}
-
-static void write_markdown(const struct cost *cost, FILE *to)
-{
+    const struct cost *cost = user;
     const struct cost_report *report = cost->report;
     fprintf(to, "    %s\n\nOn %s (%s), %.0f s.\n\n", cost->command, cli_shown(report->device),
             cli_shown(report->driver), report->spent_ms * 1e-3);
     put_tables(report, to, put_markdown_row);
     cost_say_method(report, say_item, to);
     cost_say_answers(report, say_item, to);
-}
-
-whit_result cost_save_markdown(const struct cost *cost)
-{
-    return save(cost, cost->markdown, write_markdown);
 }
 
 /* ---- CSV ---- */
@@ -483,8 +458,9 @@ static void put_csv_row(const struct cost *cost, const struct cost_row *row, FIL
     fputc('\n', to);
 }
 
-static void write_csv(const struct cost *cost, FILE *to)
+void cost_write_csv(FILE *to, const void *user)
 {
+    const struct cost *cost = user;
     static const char *const hits[] = {"rays",       "wrong",     "leaks",      "misses",
                                        "false_hits", "other_ids", "non_finite", "ulp_median",
                                        "ulp_999",    "ulp_max",   "ms"};
@@ -499,9 +475,4 @@ static void write_csv(const struct cost *cost, FILE *to)
     for (uint32_t i = 0; i < cost->report->row_count; ++i)
         if (cost->report->rows[i].measured)
             put_csv_row(cost, &cost->report->rows[i], to);
-}
-
-whit_result cost_save_csv(const struct cost *cost)
-{
-    return save(cost, cost->csv, write_csv);
 }

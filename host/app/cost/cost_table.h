@@ -10,7 +10,8 @@ void cost_say_method(const struct cost_report *report, cost_say *say, void *user
 void cost_say_answers(const struct cost_report *report, cost_say *say, void *user);
 
 int cost_print_text(const struct cost *cost);
-whit_result cost_save_markdown(const struct cost *cost);
-whit_result cost_save_csv(const struct cost *cost);
+/* For document_save_written; `cost` is a struct cost. */
+void cost_write_markdown(FILE *to, const void *cost);
+void cost_write_csv(FILE *to, const void *cost);
 
 #endif
