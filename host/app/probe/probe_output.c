@@ -1,9 +1,8 @@
 #include "app/probe/probe_output.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-#include "app/probe/probe_shader.h"
+#include "app/document.h"
 #include "app/settings_json.h"
 
 static bool was_traced(const whit_probe_ray *ray)
@@ -48,6 +47,80 @@ static uint32_t count_kind(const whit_probe_report *report, whit_ray_kind kind)
     for (uint32_t i = 0; i < report->ray_count; ++i)
         count += report->rays[i].kind == kind && was_traced(&report->rays[i]);
     return count;
+}
+
+/* ---- What --shader adds, as text ---- */
+
+/* Figures that the report lacks when a user's file has taken the place of whit's functions. */
+static const char own_rays[] = "rays that its functions trace, as by visible() and trace()";
+static const char shape[] =
+    "the shape of intersect() in twin and exact: of rays that meet it they say "
+    "whether something is before it";
+static const char before_post[] = "the share of post() in the colour";
+
+enum { MISSING_MAX = 3 };
+
+static uint32_t list_missing(const whit_shader_info *info, const char *missing[MISSING_MAX])
+{
+    uint32_t count = 0;
+    missing[count++] = own_rays;
+    if (info->hooks >> WHIT_HOOK_INTERSECT & 1)
+        missing[count++] = shape;
+    if (info->hooks >> WHIT_HOOK_POST & 1)
+        missing[count++] = before_post;
+    return count;
+}
+
+/* Prints nothing without --shader. */
+static void print_shader(const struct probe *probe)
+{
+    const whit_shader_info info = job_shader_info(probe->job.shader);
+    if (info.hooks == 0)
+        return;
+    printf("shader     %s:", cli_shown(info.files[0]));
+    const char *names[WHIT_HOOKS], *missing[MISSING_MAX];
+    uint32_t name_count = job_functions(&info, names);
+    for (uint32_t i = 0; i < name_count; ++i)
+        printf("%s %s", i ? "," : "", names[i]);
+    putchar('\n');
+    uint32_t count = list_missing(&info, missing);
+    for (uint32_t i = 0; i < count; ++i)
+        printf("missing    %s\n", missing[i]);
+}
+
+static void print_place(const whit_probe_call *call)
+{
+    printf("%s:%u: %s", cli_shown(call->file), call->line, cli_shown(call->text));
+}
+
+static void print_call(const whit_probe_call *call)
+{
+    char text[4 * 24];
+    for (uint32_t i = 0; i < call->value_count; ++i) {
+        const whit_probe_value *value = &call->values[i];
+        whit_probe_value_text(value, 9, text, sizeof text);
+        print_place(call);
+        printf(" = %s", text);
+        if (call->value_count > 1)
+            printf("   call %u", i + 1);
+        if (value->generation)
+            printf("   after %u bounce%s", value->generation, value->generation == 1 ? "" : "s");
+        putchar('\n');
+    }
+    if (call->count > call->value_count || !call->count)
+        print_place(call);
+    if (call->count > call->value_count)
+        printf(", %u times more\n", call->count - call->value_count);
+    else if (!call->count)
+        printf(" was not reached\n");
+}
+
+static void print_calls(const whit_probe_report *report)
+{
+    for (uint32_t i = 0; i < report->call_count; ++i)
+        print_call(&report->calls[i]);
+    if (report->call_count)
+        putchar('\n');
 }
 
 /* ---- Text ---- */
@@ -113,7 +186,7 @@ static void print_head(const struct probe *probe)
     printf("%u not traced, %u not recorded\n", report->ray_count - traced, report->dropped);
     printf("twin       differs in %u of %u\n", report->differing, traced);
     printf("exact      differs in %u of %u\n", exact_other, exact);
-    probe_print_shader(probe);
+    print_shader(probe);
     putchar('\n');
 }
 
@@ -221,18 +294,72 @@ int probe_print(const struct probe *probe)
 {
     whit_probe_row *rows;
     uint32_t count;
-    if (whit_probe_rows(probe->report, &rows, &count) != WHIT_OK) {
-        cli_error("out of memory");
-        return EXIT_USAGE;
-    }
+    if (whit_probe_rows(probe->report, &rows, &count) != WHIT_OK)
+        return CLI_FAIL(EXIT_USAGE, "out of memory");
     print_head(probe);
-    probe_print_calls(probe->report);
+    print_calls(probe->report);
     print_rows(probe, rows, count);
     whit_memory_destroy(rows);
     return cli_finish_stdout(EXIT_FINE);
 }
 
 /* ---- JSON ---- */
+
+static void put_names(json_t *out, const char *const *names, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; ++i)
+        document_append(out, json_string(names[i]));
+}
+
+/* null without --shader. */
+static json_t *shader_document(const struct probe *probe)
+{
+    const whit_shader_info info = job_shader_info(probe->job.shader);
+    const char *names[WHIT_HOOKS], *missing[MISSING_MAX];
+    if (info.hooks == 0)
+        return json_null();
+    json_t *out = document_object();
+    document_text(out, "file", info.files[0]);
+    put_names(document_list(out, "functions"), names, job_functions(&info, names));
+    put_names(document_list(out, "missing"), missing, list_missing(&info, missing));
+    return out;
+}
+
+static json_t *value_document(const whit_probe_value *value)
+{
+    json_t *out = document_object(), *components = document_array();
+    float reals[4] = {0};
+    for (uint32_t i = 0; i < value->size; ++i) {
+        reals[i] = (float)value->v[i];
+        document_append(components, value->kind == WHIT_VALUE_BOOL
+                                        ? json_boolean(value->v[i] != 0.0)
+                                        : json_integer((json_int_t)value->v[i]));
+    }
+    if (value->kind == WHIT_VALUE_FLOAT) {
+        json_decref(components);
+        document_floats(out, "value", reals, value->size);
+    } else {
+        document_put(out, "value", components);
+    }
+    document_count(out, "ray", value->ray);
+    document_count(out, "generation", value->generation);
+    return out;
+}
+
+static void put_calls(json_t *out, const whit_probe_report *report)
+{
+    for (uint32_t i = 0; i < report->call_count; ++i) {
+        const whit_probe_call *call = &report->calls[i];
+        json_t *one = document_entry(out);
+        document_text(one, "file", call->file);
+        document_count(one, "line", call->line);
+        document_text(one, "text", call->text);
+        document_count(one, "count", call->count);
+        json_t *values = document_list(one, "values");
+        for (uint32_t k = 0; k < call->value_count; ++k)
+            document_append(values, value_document(&call->values[k]));
+    }
+}
 
 static void put_index(json_t *object, const char *key, uint32_t index)
 {
@@ -278,9 +405,8 @@ static void put_surface(const struct probe *probe, const whit_probe_ray *ray, js
     document_flag(out, "inside", ray->inside);
 }
 
-static json_t *ray_document(const struct probe *probe, const whit_probe_ray *ray)
+static void put_ray(json_t *out, const struct probe *probe, const whit_probe_ray *ray)
 {
-    json_t *out = document_object();
     bool traced = was_traced(ray);
     document_text(out, "kind", value_word(values_rays, (int)ray->kind));
     document_flag(out, "straight", ray->straight);
@@ -303,14 +429,12 @@ static json_t *ray_document(const struct probe *probe, const whit_probe_ray *ray
     put_index(out, "light", ray->light);
     document_text(out, "light_name", light_of(probe, ray->light).name);
     put_index(out, "light_sample", ray->light_sample);
-    return out;
 }
 
-static json_t *pixel_document(const struct probe *probe)
+static void put_pixel(json_t *out, const struct probe *probe)
 {
     const whit_probe_report *report = probe->report;
     const whit_probe_ray *first = &report->rays[0];
-    json_t *out = document_object();
     char shown[8];
     snprintf(shown, sizeof shown, "#%02x%02x%02x", report->shown[0], report->shown[1],
              report->shown[2]);
@@ -320,7 +444,6 @@ static json_t *pixel_document(const struct probe *probe)
     document_text(out, "shown", shown);
     put_surface(probe, first, out);
     document_number(out, "depth", first->device.t);
-    return out;
 }
 
 whit_result probe_save_json(const struct probe *probe)
@@ -333,13 +456,13 @@ whit_result probe_save_json(const struct probe *probe)
     document_text(out, "device", device.name);
     document_text(out, "driver", device.driver);
     settings_describe(&probe->job.settings, IN_PROBE, document_child(out, "picture"));
-    document_put(out, "pixel", pixel_document(probe));
-    document_put(out, "shader", probe_shader_document(probe));
-    document_put(out, "dbg", probe_calls_document(report));
+    put_pixel(document_child(out, "pixel"), probe);
+    document_put(out, "shader", shader_document(probe));
+    put_calls(document_list(out, "dbg"), report);
     document_count(out, "differing", report->differing);
     document_count(out, "dropped", report->dropped);
     json_t *rays = document_list(out, "rays");
     for (uint32_t i = 0; i < report->ray_count; ++i)
-        document_append(rays, ray_document(probe, &report->rays[i]));
+        put_ray(document_entry(rays), probe, &report->rays[i]);
     return document_save(out, probe->json_path);
 }
