@@ -4,6 +4,7 @@
 
 #include "app/check/accept.h"
 #include "app/check/thumbnails.h"
+#include "app/document.h"
 #include "base/array.h"
 
 static bool can_accept(const struct check_result *result)
@@ -21,9 +22,9 @@ static bool check_reason(const struct check *check)
         other += check->results[i].verdict == CHECK_DIFFERS;
     if (!other || check->reason)
         return true;
-    cli_error("%u case%s other than the golden: say why they are to be so: --reason TEXT", other,
-              other == 1 ? " is" : "s are");
-    return false;
+    return CLI_FAIL(false,
+                    "%u case%s other than the golden: say why they are to be so: --reason TEXT",
+                    other, other == 1 ? " is" : "s are");
 }
 
 static bool put_parts(struct golden *golden, const struct golden *found)
@@ -108,7 +109,7 @@ int check_prune(struct check *check)
         drop_cases(&check->golden, &check->suite);
     if (!check->old.exists && !check->golden.count)
         return EXIT_FINE; /* nothing was accepted, so there is no golden to begin */
-    whit_result result = golden_save(&check->golden, check->golden_path);
+    whit_result result = document_save_text(golden_text(&check->golden), check->golden_path);
     if (result != WHIT_OK)
         return cli_exit_of(result);
     say_dropped(check);

@@ -27,10 +27,8 @@ static bool read_lines(struct golden *found, const char *where, const char *line
 {
     char *text =
         string_format("whit check golden %d, whit %s\n\n%s", GOLDEN_FORMAT, WHIT_VERSION, lines);
-    if (!text) {
-        cli_error("out of memory");
-        return false;
-    }
+    if (!text)
+        return CLI_FAIL(false, "out of memory");
     document_restore(text);
     bool read = golden_read_text(found, where, text, GOLDEN_OF_DEVICE);
     if (read && found->count != 1)
@@ -102,10 +100,8 @@ static bool take_case(struct check *check, const char *path, const json_t *item)
     const char *text = json_string_value(json_object_get(item, "text"));
     const char *lines = json_string_value(json_object_get(item, "golden"));
     char where[1024];
-    if (!name || !verdict || !text) {
-        cli_error("%s: a case of it has no name, verdict or text", path);
-        return false;
-    }
+    if (!name || !verdict || !text)
+        return CLI_FAIL(false, "%s: a case of it has no name, verdict or text", path);
     const struct check_case *of = suite_find(&check->suite, name);
     struct check_result *result = of ? &check->results[of - check->suite.cases] : NULL;
     snprintf(where, sizeof where, "%.800s: %.100s", path, name);
@@ -120,10 +116,9 @@ static bool take_case(struct check *check, const char *path, const json_t *item)
         return true;
     if (lines && checked_all(of, json_object_get(item, "expects")))
         return take_lines(check, result, lines, where);
-    cli_error("%s: %s", where,
-              lines ? "the report was made before the suite expected of it what it does now"
-                    : "the report has no lines of a golden");
-    return false;
+    return CLI_FAIL(false, "%s: %s", where,
+                    lines ? "the report was made before the suite expected of it what it does now"
+                          : "the report has no lines of a golden");
 }
 
 /* ---- Files ---- */
@@ -137,8 +132,8 @@ static bool is_of_kind(const struct check *check, const char *path, const json_t
     on = on ? on : golden_kind_word(GOLDEN_OF_DEVICE);
     if (strcmp(on, wanted) == 0)
         return true;
-    cli_error("%s: its pictures are by the %s, not by the %s", path, cli_shown(on), wanted);
-    return false;
+    return CLI_FAIL(false, "%s: its pictures are by the %s, not by the %s", path, cli_shown(on),
+                    wanted);
 }
 
 /* Whether a path tells nothing of the folders it leads through: an absolute one, which may be that
@@ -237,9 +232,8 @@ static bool have_names(const struct check *check)
         }
         if (!wanted || found)
             continue;
-        cli_error("%s: it has no result of `%s` of %s", check->accept_from, pattern,
-                  check->suite.path);
-        return false;
+        return CLI_FAIL(false, "%s: it has no result of `%s` of %s", check->accept_from, pattern,
+                        check->suite.path);
     }
     return true;
 }

@@ -9,8 +9,6 @@
 #include "base/file.h"
 #include "base/path.h"
 
-enum { WORDS_BYTES = 1024 };
-
 static void say_wrong(void *user, const char *text)
 {
     const struct base *base = user;
@@ -102,10 +100,9 @@ static whit_result write_all(const struct past *past, const struct studio *studi
     const struct job now = studio_input(studio, item, drawing);
     struct drawing_difference difference;
     struct cause cause;
-    char words[WORDS_BYTES];
     drawing_difference_find(&past->picture, drawing, &difference);
-    drawing_difference_write(&difference, words, sizeof words);
-    fprintf(to, "%s; ", words);
+    drawing_difference_write(&difference, to);
+    fputs("; ", to);
     whit_result result = cause_find(&cause, &past->input, &past->picture, &now);
     if (result == WHIT_OK)
         cause_write(&cause, to);
@@ -113,9 +110,8 @@ static whit_result write_all(const struct past *past, const struct studio *studi
     if (result != WHIT_OK)
         return result;
     cli_hush(true);
-    drawing_difference_write_pixel(&difference, &past->picture, drawing, words, sizeof words);
+    drawing_difference_write_pixel(&difference, &past->picture, drawing, to);
     cli_hush(false);
-    fprintf(to, "%s%s", words[0] ? "; " : "", words);
     return WHIT_OK;
 }
 

@@ -28,14 +28,6 @@ static bool add_settings(struct cause *cause)
     return good;
 }
 
-static uint64_t shader_hash(const whit_shader *shader)
-{
-    whit_shader_info info = {.hash = 0};
-    if (shader)
-        whit_shader_get_info(shader, &info);
-    return info.hash;
-}
-
 static const whit_part *find_part(const whit_part *parts, uint32_t count, const whit_part *like)
 {
     for (uint32_t i = 0; i < count; ++i) {
@@ -71,7 +63,8 @@ static whit_result find_changes(struct cause *cause)
     whit_result result = add_parts(cause);
     if (result != WHIT_OK)
         return result;
-    bool functions = shader_hash(cause->before.shader) != shader_hash(cause->after.shader);
+    bool functions =
+        job_shader_info(cause->before.shader).hash != job_shader_info(cause->after.shader).hash;
     if (!add_settings(cause) ||
         (functions && !add_change(cause, (struct cause_change){CAUSE_FUNCTIONS, 0, NULL})))
         return cli_no_memory();

@@ -3,8 +3,8 @@
 #ifndef APP_CHECK_CAUSE_H
 #define APP_CHECK_CAUSE_H
 
+#include "app/check/draw.h"
 #include "app/check/search.h"
-#include "app/check/trial.h"
 
 /* The most pictures that are drawn to find one cause. */
 enum { CAUSE_PICTURES_MAX = 64 };

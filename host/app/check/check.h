@@ -31,6 +31,7 @@ struct check {
     char *golden_path;
     struct golden old, golden; /* the golden as it was read; as it will be saved */
     bool *wanted;              /* per case of the suite: it is to be drawn */
+    uint32_t wanted_count;
     struct check_result *results;
     struct base past;        /* with --base */
     whit_device_info device; /* known once something was drawn */
@@ -58,7 +59,7 @@ bool check_read_reports(struct check *check);
 /* report.c, junit.c, page.c: reports on all cases that were run. */
 struct json_t;
 struct json_t *check_document(const struct check *check, int status);
-WHIT_CHECK whit_result check_save_junit(const struct check *check);
+void check_write_junit(FILE *to, const void *check); /* for document_save_written */
 WHIT_CHECK whit_result check_save_page(const struct check *check, int status);
 extern const char check_page_html[]; /* page.html, ended by 0; CMake makes it */
 

@@ -9,7 +9,6 @@
 #include "app/check/lanes.h"
 #include "app/check/strength.h"
 #include "app/check/thumbnails.h"
-#include "app/check/trial.h"
 #include "app/commands.h"
 #include "app/document.h"
 #include "base/array.h"
@@ -22,7 +21,7 @@ enum { GRACE_MS = 20000 };
 
 /* ---- Options ---- */
 
-static bool add_names(const char *value, struct check_names *names, char *why)
+static bool add_name(const char *value, struct check_names *names, char *why)
 {
     if (!value[0] || names->count == CHECK_PATTERNS_MAX)
         return setting_refuse(why, " `%s`: names of up to %d cases are needed", value,
@@ -31,16 +30,9 @@ static bool add_names(const char *value, struct check_names *names, char *why)
     return true;
 }
 
-static bool read_accept(const struct setting *setting, const char *value, void *record, char *why)
+static bool read_name(const struct setting *setting, const char *value, void *record, char *why)
 {
-    (void)setting;
-    return add_names(value, &((struct check *)record)->accept, why);
-}
-
-static bool read_only(const struct setting *setting, const char *value, void *record, char *why)
-{
-    (void)setting;
-    return add_names(value, &((struct check *)record)->only, why);
+    return add_name(value, (struct check_names *)(void *)((char *)record + setting->offset), why);
 }
 
 static const struct setting_value values_on[] = {
@@ -48,13 +40,13 @@ static const struct setting_value values_on[] = {
 
 static const struct setting options[] = {
     {"only", 0, "NAME", "those cases alone; * and ? stand for letters; may be given again",
-     .kind = SETTING_OWN, .read = read_only},
+     .kind = SETTING_OWN, .offset = offsetof(struct check, only), .read = read_name},
     {"list", 0, NULL, "print the names of the cases, and draw nothing",
      SETTING_AT_FLAG(struct check, list)},
     {"accept", 0, "NAME|all",
      "take what these cases show now into the golden; further\n"
      "names may follow behind SUITE",
-     .kind = SETTING_OWN, .read = read_accept},
+     .kind = SETTING_OWN, .offset = offsetof(struct check, accept), .read = read_name},
     {"reason", 0, "TEXT", "with --accept: why pictures change; kept in the golden",
      SETTING_AT_NAME(struct check, reason)},
     {"accept-from", 0, "FOLDER|FILE",
@@ -192,7 +184,7 @@ static bool check_request(struct cli_reader *reader, struct check *check)
     if (reader->other_count && !check->accept.count)
         return cli_misuse(reader, "`%s` is one argument too many", reader->others[0]);
     for (uint32_t i = 0; i < reader->other_count; ++i) {
-        if (!add_names(reader->others[i], &check->accept, why))
+        if (!add_name(reader->others[i], &check->accept, why))
             return cli_misuse(reader, "--accept%s", why);
     }
     if (check->reason && !check->accept.count)
@@ -225,11 +217,9 @@ static bool check_patterns(const struct check *check, const struct check_names *
         uint32_t at = 0;
         while (at < check->suite.count && !check_names_match(&one, check->suite.cases[at].name))
             ++at;
-        if (at == check->suite.count) {
-            cli_error("%s `%s`: %s has no such case", option, names->patterns[i],
-                      check->suite.path);
-            return false;
-        }
+        if (at == check->suite.count)
+            return CLI_FAIL(false, "%s `%s`: %s has no such case", option, names->patterns[i],
+                            check->suite.path);
     }
     return true;
 }
@@ -253,24 +243,20 @@ static bool choose(struct check *check)
     uint32_t count = check->suite.count;
     check->wanted = array_alloc_zeroed(count, sizeof *check->wanted);
     check->results = array_alloc_zeroed(count, sizeof *check->results);
-    if (!check->wanted || !check->results) {
-        cli_error("out of memory");
-        return false;
-    }
+    if (!check->wanted || !check->results)
+        return CLI_FAIL(false, "out of memory");
     for (uint32_t i = 0; i < count; ++i) {
         const char *name = check->suite.cases[i].name;
         check->results[i].item = &check->suite.cases[i];
         check->wanted[i] = is_named(check, name);
+        check->wanted_count += check->wanted[i];
     }
     if (!check_patterns(check, &check->only, "--only") ||
         !check_patterns(check, &check->accept, "--accept"))
         return false;
-    for (uint32_t i = 0; i < count; ++i) {
-        if (check->wanted[i])
-            return true;
-    }
-    cli_error("%s: no case is named by both --only and --accept", check->suite.path);
-    return false;
+    if (!check->wanted_count)
+        cli_error("%s: no case is named by both --only and --accept", check->suite.path);
+    return check->wanted_count > 0;
 }
 
 /* ---- Cases ---- */
@@ -426,15 +412,14 @@ static const char *why_undrawn(whit_result result)
 /* After a run that failed, marks the cases that were not drawn as CHECK_UNDRAWN. */
 static void mark_undrawn(struct check *check, whit_result result)
 {
-    uint32_t wanted = 0, drawn = 0;
+    uint32_t drawn = 0;
     for (uint32_t i = 0; i < check->suite.count; ++i) {
         struct check_result *one = &check->results[i];
-        wanted += check->wanted[i];
         drawn += one->verdict != CHECK_NOT_RUN;
         if (check->wanted[i] && one->verdict == CHECK_NOT_RUN)
             verdict_set(one, CHECK_UNDRAWN, string_format("not drawn: %s", why_undrawn(result)));
     }
-    cli_set_kept(drawn, wanted, "cases were drawn");
+    cli_set_kept(drawn, check->wanted_count, "cases were drawn");
 }
 
 static whit_result run_cases(struct check *check)
@@ -485,14 +470,6 @@ static void print_counts(const struct check *check)
     fputc('\n', to);
 }
 
-static uint32_t count_gone(const struct check *check)
-{
-    uint32_t gone = 0;
-    for (uint32_t i = 0; i < check->golden.count; ++i)
-        gone += suite_find(&check->suite, check->golden.cases[i].name) == NULL;
-    return gone;
-}
-
 static int sum_up(struct check *check)
 {
     int status = EXIT_FINE;
@@ -500,7 +477,9 @@ static int sum_up(struct check *check)
         status = verdict_exit(&check->results[i], status);
     if (status == EXIT_MISSING && !check->settings.quiet)
         cli_note("%s: `--accept all` takes what is new into it", check->golden_path);
-    uint32_t gone = count_gone(check);
+    uint32_t gone = 0;
+    for (uint32_t i = 0; i < check->golden.count; ++i)
+        gone += suite_find(&check->suite, check->golden.cases[i].name) == NULL;
     if (gone && !check->settings.quiet)
         cli_note("%s has %u case%s that the suite has not: `--prune` drops %s", check->golden_path,
                  gone, gone == 1 ? "" : "s", gone == 1 ? "it" : "them");
@@ -533,7 +512,7 @@ static whit_result save_reports(const struct check *check, int status)
     if (check->json)
         results[0] = document_save(check_document(check, status), check->json);
     if (check->junit)
-        results[1] = check_save_junit(check);
+        results[1] = document_save_written(check->junit, check_write_junit, check);
     if (check->report)
         results[2] = check_save_page(check, status);
     return results[0] != WHIT_OK ? results[0] : results[1] != WHIT_OK ? results[1] : results[2];
@@ -597,11 +576,6 @@ static void say_wrong(void *user, const char *text)
     cli_error("%s", text);
 }
 
-static bool changes_golden(const struct check *check)
-{
-    return check->accept.count || check->prune;
-}
-
 /* Locks the golden, from before it is read until it is saved, so that of two processes that accept
    at once the second adds to what the first has saved. WHIT_ERROR_OUTPUT: that is not possible;
    WHIT_ERROR_CANCELLED and WHIT_ERROR_TIME_LIMIT: another process had the lock until then. */
@@ -626,7 +600,7 @@ static int work_on_golden(struct check *check)
 {
     const enum golden_kind kind = (enum golden_kind)check->on;
     struct lock lock = {.path = NULL};
-    whit_result locked = changes_golden(check) ? lock_golden(check, &lock) : WHIT_OK;
+    whit_result locked = check->accept.count || check->prune ? lock_golden(check, &lock) : WHIT_OK;
     int status = EXIT_USAGE;
     if (locked != WHIT_OK)
         status = check->accept.count && locked != WHIT_ERROR_OUTPUT ? end_run(check, locked)

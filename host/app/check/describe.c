@@ -1,6 +1,5 @@
 /* The entry of a golden file: hashes of what was drawn, its mean, and the parts it was made of. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "app/check/describe.h"

@@ -150,7 +150,35 @@ static whit_result take_shader(struct studio *studio, struct job *job)
 
 /* ---- A picture ---- */
 
-whit_result drawing_make(struct drawing *drawing, whit_renderer **renderer)
+/* WHIT_ERROR_USAGE, with a message, where the job has no device and its settings ask for something
+   that the reference cannot draw. */
+static whit_result reference_check(const struct job *job)
+{
+    const struct settings *settings = &job->settings;
+    const whit_overlay over = settings_overlay(settings);
+    const struct {
+        bool asked;
+        const char *option;
+    } refused[] = {
+        {settings->shader[0], "--shader"},
+        {settings->paint != PAINT_COLOR, "--view"},
+        {over.grid, "--grid"},
+        {over.edges_of_instances || over.edges_of_primitives, "--edges"},
+        {settings->picture.sampling.kind == WHIT_SAMPLING_ADAPTIVE, "--aa adaptive"},
+        {settings->picture.effects_removed, "--effects without some"},
+    };
+    for (size_t i = 0; !job->device && i < sizeof refused / sizeof *refused; ++i) {
+        if (!refused[i].asked)
+            continue;
+        return CLI_FAIL(WHIT_ERROR_USAGE, "%s: the reference does not draw it, a device does",
+                        refused[i].option);
+    }
+    return WHIT_OK;
+}
+
+/* Makes a renderer, which the caller owns, for the drawing's job and params, or the drawing's
+   reference where the job has no device. */
+static whit_result make(struct drawing *drawing, whit_renderer **renderer)
 {
     const struct job *job = &drawing->job;
     return job->device
@@ -172,7 +200,7 @@ static whit_result make_renderer(struct studio *studio, struct drawing *drawing,
         result = whit_renderer_set_view(studio->renderer, &drawing->params);
     } else {
         drop_renderer(studio);
-        result = drawing_make(drawing, &studio->renderer);
+        result = make(drawing, &studio->renderer);
     }
     studio->counted = drawing->params.count;
     studio->drawn_as = job->settings;
@@ -184,14 +212,12 @@ static whit_result make_renderer(struct studio *studio, struct drawing *drawing,
 static whit_result read_color(struct drawing *drawing)
 {
     const struct settings *settings = &drawing->job.settings;
-    whit_shader_info info = {.aov_count = 0};
+    const whit_shader_info info = job_shader_info(settings->aov[0] ? drawing->job.shader : NULL);
     whit_aov aov = WHIT_AOV_COLOR;
     if (settings->paint != PAINT_COLOR)
         return whit_renderer_cost_image(drawing->renderer,
                                         (whit_view)(settings->paint - PAINT_DEPTH),
                                         (whit_ray_kind)settings->paint_rays, &drawing->color);
-    if (settings->aov[0])
-        whit_shader_get_info(drawing->job.shader, &info);
     for (uint32_t i = 0; i < info.aov_count; ++i) {
         if (strcmp(info.aovs[i], settings->aov) == 0)
             aov = (whit_aov)(WHIT_AOV_SHADER + i);
@@ -230,7 +256,8 @@ static whit_result render_by_device(struct drawing *drawing)
                              : result;
 }
 
-whit_result drawing_render(struct drawing *drawing)
+/* Renders, reads what the drawing's settings ask for, and hashes it. */
+static whit_result render(struct drawing *drawing)
 {
     whit_result result =
         drawing->reference ? render_by_reference(drawing) : render_by_device(drawing);
@@ -288,7 +315,7 @@ whit_result studio_draw(struct studio *studio, uint32_t index, bool counts, stru
     if (result == WHIT_OK)
         result = make_renderer(studio, drawing, counts);
     if (result == WHIT_OK)
-        result = drawing_render(drawing);
+        result = render(drawing);
     if (result != WHIT_OK)
         drop_renderer(studio);
     return result == WHIT_OK ? job_still_wanted() : result;
@@ -300,6 +327,43 @@ void drawing_finish(struct drawing *drawing)
     whit_image_destroy(drawing->ids);
     whit_reference_destroy(drawing->reference);
     *drawing = (struct drawing){.renderer = NULL};
+}
+
+/* ---- Other pictures ---- */
+
+whit_result trial_draw(struct drawing *drawing, const struct job *input)
+{
+    struct job *job = &drawing->job;
+    *drawing = (struct drawing){.job = *input};
+    whit_result result = reference_check(job);
+    if (result == WHIT_OK)
+        result = job_take_scene(job);
+    if (result == WHIT_OK)
+        result = render_check_camera(job);
+    if (result == WHIT_OK)
+        result = job_build(job);
+    if (result == WHIT_OK) {
+        drawing->params = job_picture(job);
+        result = make(drawing, &drawing->renderer);
+    }
+    if (result == WHIT_OK)
+        result = render(drawing);
+    return result == WHIT_OK ? job_still_wanted() : result;
+}
+
+void trial_finish(struct drawing *drawing)
+{
+    whit_accel *accel = drawing->job.accel;
+    whit_renderer_destroy(drawing->renderer);
+    drawing_finish(drawing);
+    whit_accel_destroy(accel);
+}
+
+bool trial_ends_all(whit_result result)
+{
+    return result == WHIT_ERROR_NO_DEVICE || result == WHIT_ERROR_DEVICE ||
+           result == WHIT_ERROR_MEMORY || result == WHIT_ERROR_TIME_LIMIT ||
+           result == WHIT_ERROR_CANCELLED;
 }
 
 void studio_forget(struct studio *studio)

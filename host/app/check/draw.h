@@ -52,20 +52,19 @@ struct settings studio_settings(const struct studio *studio, const struct check_
 /* What the studio has drawn a case with, as input of trial_draw. */
 struct job studio_input(const struct studio *studio, const struct check_case *item,
                         const struct drawing *drawing);
-/* Makes a renderer, which the caller owns, for the drawing's job and params, or the drawing's
-   reference where the job has no device. */
-WHIT_CHECK whit_result drawing_make(struct drawing *drawing, whit_renderer **renderer);
-/* Renders, reads what the drawing's settings ask for, and hashes it. */
-WHIT_CHECK whit_result drawing_render(struct drawing *drawing);
 /* Whether hits and colours of two pictures are the same bytes. */
 bool drawing_same(const struct drawing *a, const struct drawing *b);
 /* probe.c: the camera ray of a pixel's first sample, its hit in ray->device; a miss where a
    shader's camera() sends none. */
 WHIT_CHECK whit_result drawing_probe(const struct drawing *drawing, uint32_t x, uint32_t y,
                                      whit_probe_ray *ray);
-/* on_reference.c: WHIT_ERROR_USAGE, with a message, where the job has no device and its settings
-   ask for something that the reference cannot draw. */
-WHIT_CHECK whit_result reference_check(const struct job *job);
+/* Draws an extra picture that is no case of the suite, of `input`: settings, a loaded scene, a
+   shader or NULL, and a device, NULL for the reference, all borrowed. The drawing owns the trees
+   and the renderer that it needs. Call trial_finish() in any case. */
+WHIT_CHECK whit_result trial_draw(struct drawing *drawing, const struct job *input);
+void trial_finish(struct drawing *drawing);
+/* Whether, after such an error, no other picture can be drawn either. */
+bool trial_ends_all(whit_result result);
 /* Drops scenes and functions, so that they are loaded again for the next case, with their
    messages. */
 void studio_forget(struct studio *studio);

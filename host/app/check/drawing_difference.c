@@ -48,17 +48,17 @@ void drawing_difference_find(const struct drawing *before, const struct drawing 
     }
 }
 
-void drawing_difference_write(const struct drawing_difference *difference, char *text, size_t bytes)
+void drawing_difference_write(const struct drawing_difference *difference, FILE *to)
 {
     if (!difference->same_size)
-        snprintf(text, bytes, "another size");
+        fprintf(to, "another size");
     else if (difference->hits)
-        snprintf(text, bytes, "%" PRIu64 " pixel%s other, %" PRIu64 " hit%s something else",
-                 difference->others, difference->others == 1 ? "" : "s", difference->hits,
-                 difference->hits == 1 ? "s" : "");
+        fprintf(to, "%" PRIu64 " pixel%s other, %" PRIu64 " hit%s something else",
+                difference->others, difference->others == 1 ? "" : "s", difference->hits,
+                difference->hits == 1 ? "s" : "");
     else
-        snprintf(text, bytes, "%" PRIu64 " pixel%s other, of the same hits", difference->others,
-                 difference->others == 1 ? "" : "s");
+        fprintf(to, "%" PRIu64 " pixel%s other, of the same hits", difference->others,
+                difference->others == 1 ? "" : "s");
 }
 
 /* ---- One pixel ---- */
@@ -104,20 +104,19 @@ static void write_hit(const struct seen *seen, char *text, size_t bytes)
 
 void drawing_difference_write_pixel(const struct drawing_difference *difference,
                                     const struct drawing *before, const struct drawing *after,
-                                    char *text, size_t bytes)
+                                    FILE *to)
 {
     struct seen was, is;
     char hit_before[400], hit_after[400];
-    text[0] = 0;
     if (!difference->same_size || !difference->others || !probe(before, difference, &was) ||
         !probe(after, difference, &is))
         return;
     write_hit(&was, hit_before, sizeof hit_before);
     write_hit(&is, hit_after, sizeof hit_after);
     if (strcmp(hit_before, hit_after) != 0)
-        snprintf(text, bytes, "pixel %u,%u: was %s, is %s", difference->x, difference->y,
-                 hit_before, hit_after);
+        fprintf(to, "; pixel %u,%u: was %s, is %s", difference->x, difference->y, hit_before,
+                hit_after);
     else
-        snprintf(text, bytes, "pixel %u,%u: %s, was %s, is %s", difference->x, difference->y,
-                 hit_after, was.value, is.value);
+        fprintf(to, "; pixel %u,%u: %s, was %s, is %s", difference->x, difference->y, hit_after,
+                was.value, is.value);
 }

@@ -15,12 +15,11 @@ struct drawing_difference {
 void drawing_difference_find(const struct drawing *before, const struct drawing *after,
                              struct drawing_difference *out);
 /* "214 pixels other, 96 hit something else" */
-void drawing_difference_write(const struct drawing_difference *difference, char *text,
-                              size_t bytes);
-/* "pixel 212,87: was ball 5532 at 4.1021, is floor 0 at 5.87": the two hits of the pixel, probed by
-   both renderers; "" where one cannot. Names are as the files have them. */
+void drawing_difference_write(const struct drawing_difference *difference, FILE *to);
+/* "; pixel 212,87: was ball 5532 at 4.1021, is floor 0 at 5.87": the two hits of the pixel, probed
+   by both renderers; nothing where one cannot. Names are as the files have them. */
 void drawing_difference_write_pixel(const struct drawing_difference *difference,
                                     const struct drawing *before, const struct drawing *after,
-                                    char *text, size_t bytes);
+                                    FILE *to);
 
 #endif

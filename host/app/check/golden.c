@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "app/cli.h"
-#include "app/document.h"
 #include "base/array.h"
 #include "base/file.h"
 #include "base/hash.h"
@@ -189,8 +188,7 @@ static bool refuse(const struct reading *reading, const char *format, ...)
     va_start(args, format);
     vsnprintf(why, sizeof why, format, args);
     va_end(args);
-    cli_error("%s:%u: %s", reading->where, reading->line, why);
-    return false;
+    return CLI_FAIL(false, "%s:%u: %s", reading->where, reading->line, why);
 }
 
 /* The rest of a line that starts with `word`; NULL: it starts with something else. */
@@ -510,9 +508,4 @@ char *golden_case_text(const struct golden *golden, const char *name)
 {
     const struct golden_case *item = golden_find(golden, name);
     return text_of(golden, item, item ? 1 : 0, false);
-}
-
-whit_result golden_save(const struct golden *golden, const char *path)
-{
-    return document_save_text(golden_text(golden), path);
 }

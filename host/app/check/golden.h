@@ -76,8 +76,6 @@ const char *golden_kind_word(enum golden_kind kind);
 char *golden_text(const struct golden *golden);
 /* The lines of one case and of its parts, without the first line of a file. */
 char *golden_case_text(const struct golden *golden, const char *name);
-/* Writes a file beside `path` and renames it. */
-WHIT_CHECK whit_result golden_save(const struct golden *golden, const char *path);
 
 /* A part's short hash, of its key and the 64-bit hash of its content. */
 uint32_t golden_part_hash(const char *key, uint64_t content);

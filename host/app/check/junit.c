@@ -1,9 +1,5 @@
 /* A run of `whit check` as JUnit XML, which CI services show. */
-#include <stdlib.h>
-#include <string.h>
-
 #include "app/check/check.h"
-#include "base/file.h"
 
 /* Writes text as the value of an XML attribute. Characters that XML cannot hold become escapes. */
 static void put_text(FILE *to, const char *text)
@@ -35,8 +31,9 @@ static void put_case(FILE *to, const struct check *check, const struct check_res
     fputs("\"/>\n  </testcase>\n", to);
 }
 
-static void put_all(FILE *to, const struct check *check)
+void check_write_junit(FILE *to, const void *user)
 {
+    const struct check *check = user;
     uint32_t tests = 0, failures = 0, errors = 0;
     double time_ms = 0.0;
     for (uint32_t i = 0; i < check->suite.count; ++i) {
@@ -55,18 +52,4 @@ static void put_all(FILE *to, const struct check *check)
             put_case(to, check, &check->results[i]);
     }
     fputs("</testsuite>\n", to);
-}
-
-whit_result check_save_junit(const struct check *check)
-{
-    char *text = NULL;
-    size_t bytes;
-    FILE *to = open_memstream(&text, &bytes);
-    if (to)
-        put_all(to, check);
-    whit_result result = to && fclose(to) == 0
-                             ? file_write_whole(&cli_log, check->junit, text, bytes)
-                             : cli_no_memory();
-    free(text);
-    return result;
 }

@@ -79,10 +79,7 @@ static void draw_cases(void *context)
 
 static uint32_t count_lanes(const struct check *check, const struct studio *first)
 {
-    uint32_t cases = 0, cores = threads_available();
-    for (uint32_t i = 0; i < check->suite.count; ++i)
-        cases += check->wanted[i];
-    uint32_t count = cases / CASES_A_LANE;
+    uint32_t count = check->wanted_count / CASES_A_LANE, cores = threads_available();
     count = count < cores ? count : cores;
     /* With --base all cases are drawn by the first device, which also draws the old pictures. */
     if (!count || check->base || !first->job.device || !whit_device_takes_peers(first->job.device))

@@ -10,8 +10,7 @@ enum { THUMBNAIL_SIDE = 96, SIDE_MIN = 8, DIFFERENCE_TIMES = 8 };
 
 static whit_result out_of_memory(void)
 {
-    cli_error("out of memory for small pictures");
-    return WHIT_ERROR_MEMORY;
+    return CLI_FAIL(WHIT_ERROR_MEMORY, "out of memory for small pictures");
 }
 
 /* ---- Smaller pictures ---- */

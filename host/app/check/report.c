@@ -7,12 +7,10 @@
 
 enum { COMMAND_BYTES = 16384 };
 
-static json_t *rays_document(const uint64_t rays[WHIT_RAY_KINDS])
+static void put_rays(json_t *out, const uint64_t rays[WHIT_RAY_KINDS])
 {
-    json_t *out = document_object();
     for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
         document_count(out, value_word(values_rays, kind), rays[kind]);
-    return out;
 }
 
 /* Describes a case of a golden; null where there is none. */
@@ -25,7 +23,7 @@ static json_t *picture_document(const struct golden_case *item)
     document_hash(out, "colors", item->colors);
     document_count(out, "width", item->width);
     document_count(out, "height", item->height);
-    document_put(out, "rays", rays_document(item->rays));
+    put_rays(document_child(out, "rays"), item->rays);
     document_numbers(out, "mean", item->mean, 3);
     document_text(out, "made_by", item->made_by);
     document_text(out, "reason", item->reason);
@@ -64,12 +62,11 @@ static void put_command(json_t *object, const struct check *check, const struct 
     free(text);
 }
 
-static json_t *case_document(const struct check *check, uint32_t index)
+static void put_case(json_t *out, const struct check *check, uint32_t index)
 {
     const struct check_result *result = &check->results[index];
     const struct golden_case *found = result->found.count ? result->found.cases : NULL;
     char *lines = found ? golden_case_text(&result->found, found->name) : NULL;
-    json_t *out = document_object();
     document_text(out, "name", result->item->name);
     document_count(out, "line", result->item->line);
     document_text(out, "verdict", verdict_word(result->verdict));
@@ -85,7 +82,6 @@ static json_t *case_document(const struct check *check, uint32_t index)
     document_put(out, "was", picture_document(golden_find(&check->old, result->item->name)));
     document_text(out, "golden", lines);
     free(lines);
-    return out;
 }
 
 json_t *check_document(const struct check *check, int status)
@@ -101,7 +97,7 @@ json_t *check_document(const struct check *check, int status)
     json_t *cases = document_list(root, "cases");
     for (uint32_t i = 0; i < check->suite.count; ++i) {
         if (check->results[i].verdict != CHECK_NOT_RUN)
-            document_append(cases, case_document(check, i));
+            put_case(document_entry(cases), check, i);
     }
     return root;
 }

@@ -160,19 +160,16 @@ static void put_difference(FILE *to, const struct golden_case *old, const struct
 static char *text_of(enum check_verdict verdict, const struct golden_case *old,
                      const struct golden_case *now, const char *changed)
 {
+    static const char *const beginnings[] = {[CHECK_OK] = "ok",
+                                             [CHECK_SAME] = "input changed, picture same",
+                                             [CHECK_NEW] = "no golden",
+                                             [CHECK_DIFFERS] = "differs: "};
     char *text = NULL;
     size_t size;
     FILE *to = open_memstream(&text, &size);
     if (!to)
         return NULL;
-    if (verdict == CHECK_OK)
-        fputs("ok", to);
-    else if (verdict == CHECK_NEW)
-        fputs("no golden", to);
-    else if (verdict == CHECK_SAME)
-        fputs("input changed, picture same", to);
-    else
-        fputs("differs: ", to);
+    fputs(beginnings[verdict], to);
     if (verdict == CHECK_DIFFERS)
         put_difference(to, old, now);
     else if (old)
@@ -200,8 +197,9 @@ bool verdict_find(struct check_result *result, const struct golden *golden)
    missing golden. */
 int verdict_exit(const struct check_result *result, int worst)
 {
-    static const int order[] = {EXIT_FINE, EXIT_MISSING, EXIT_DIFFERS, EXIT_USAGE};
-    int code = EXIT_FINE, a = 0, b = 0;
+    static const int rank[] = {
+        [EXIT_FINE] = 0, [EXIT_MISSING] = 1, [EXIT_DIFFERS] = 2, [EXIT_USAGE] = 3};
+    int code = EXIT_FINE;
     if (result->verdict == CHECK_NEW)
         code = EXIT_MISSING;
     else if (result->verdict == CHECK_BROKEN)
@@ -210,9 +208,5 @@ int verdict_exit(const struct check_result *result, int worst)
                    : EXIT_USAGE;
     else if (result->verdict >= CHECK_DIFFERS)
         code = EXIT_DIFFERS;
-    while (order[a] != code)
-        ++a;
-    while (order[b] != worst)
-        ++b;
-    return a > b ? code : worst;
+    return rank[code] > rank[worst] ? code : worst;
 }

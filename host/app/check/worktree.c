@@ -139,8 +139,7 @@ static whit_result refuse(const char *revision, const char *why)
 {
     if (cli_cancel) /* git was interrupted as well */
         return WHIT_ERROR_CANCELLED;
-    cli_error("--base %s: %s", cli_shown(revision), cli_shown(why));
-    return WHIT_ERROR_INPUT;
+    return CLI_FAIL(WHIT_ERROR_INPUT, "--base %s: %s", cli_shown(revision), cli_shown(why));
 }
 
 static bool make_holder(struct worktree *tree)
