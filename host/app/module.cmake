@@ -31,7 +31,7 @@ add_executable(whit_program
   app/batch/batch_command.c app/batch/lines.c app/batch/outputs.c app/merge/merge_command.c app/merge/merge.c
   app/hard/hard_command.c app/hard/hard_output.c
   app/probe/probe_command.c app/probe/probe_output.c
-  app/render/costs.c app/render/frames.c app/render/layers.c app/render/part.c app/render/recipe.c app/render/refine.c
+  app/render/frames.c app/render/layers.c app/render/part.c app/render/recipe.c app/render/refine.c
   app/render/render_command.c app/render/repeat.c app/render/resume.c
   app/render/stats.c app/render/view_image.c app/render/cameras.c
   app/scene/kernels.c app/scene/listing.c app/scene/listing_output.c app/scene/receipt.c

@@ -1,6 +1,5 @@
 #include "app/render/frames.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -11,33 +10,20 @@
 #include "app/render/resume.h"
 #include "base/array.h"
 #include "base/sample.h"
+#include "base/text.h"
 
 enum { FRAME_MAX = 1000000000 };
 
 /* ---- Options ---- */
 
-static const char *read_number(const char *text, uint32_t *out)
-{
-    uint64_t value = 0;
-    if (!isdigit((unsigned char)*text))
-        return NULL;
-    for (; isdigit((unsigned char)*text); ++text) {
-        value = 10 * value + (uint64_t)(*text - '0');
-        if (value > FRAME_MAX)
-            return NULL;
-    }
-    *out = (uint32_t)value;
-    return text;
-}
-
 bool frames_read(const struct setting *setting, const char *value, void *request,
                  char why[SETTING_WHY_BYTES])
 {
     struct frames *frames = &((struct render_request *)request)->frames;
-    const char *text = read_number(value, &frames->first);
+    const char *text = text_number(value, FRAME_MAX, &frames->first);
     (void)setting;
     if (text && *text == '-')
-        text = read_number(text + 1, &frames->last);
+        text = text_number(text + 1, FRAME_MAX, &frames->last);
     else
         text = NULL;
     if (!text || *text)
@@ -62,13 +48,6 @@ size_t frames_find_marks(const char *pattern, size_t *length)
     return (size_t)(first - pattern);
 }
 
-static bool has_marks(const char *pattern)
-{
-    size_t length;
-    frames_find_marks(pattern, &length);
-    return length > 0;
-}
-
 char *frames_path(const char *pattern, uint32_t frame)
 {
     size_t length, at = frames_find_marks(pattern, &length), size = strlen(pattern) + 16;
@@ -85,7 +64,10 @@ static bool check_marks(struct cli_reader *reader, const struct render_request *
                         const char *option, const char *file, const char *ending)
 {
     bool views = request->cameras.file != NULL;
-    return !file || has_marks(file) ||
+    size_t length = 0;
+    if (file)
+        frames_find_marks(file, &length);
+    return !file || length > 0 ||
            cli_misuse(reader,
                       "%s %s: with %s its name needs # for the number of the %s, such as "
                       "name.####.%s",
@@ -141,8 +123,8 @@ static whit_result keep_times(struct sequence *sequence, const struct frame_time
 {
     if (ARRAY_PUSH(sequence->each, sequence->count, sequence->capacity, *times))
         return WHIT_OK;
-    cli_error("out of memory for the times of %u frames", sequence->count + 1);
-    return WHIT_ERROR_MEMORY;
+    return CLI_FAIL(WHIT_ERROR_MEMORY, "out of memory for the times of %u frames",
+                    sequence->count + 1);
 }
 
 static whit_result find_medians(struct sequence *sequence)
@@ -154,10 +136,8 @@ static whit_result find_medians(struct sequence *sequence)
     if (count == 0)
         return WHIT_OK;
     double *values = malloc((size_t)count * sizeof *values);
-    if (!values) {
-        cli_error("out of memory for the times of %u frames", count);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!values)
+        return CLI_FAIL(WHIT_ERROR_MEMORY, "out of memory for the times of %u frames", count);
     for (size_t f = 0; f < sizeof fields / sizeof *fields; ++f) {
         for (uint32_t i = 0; i < count; ++i)
             values[i] = *(const double *)((const char *)&sequence->each[i] + fields[f]);
@@ -175,20 +155,12 @@ void sequence_finish(struct sequence *sequence)
 
 /* ---- Frames ---- */
 
-static whit_result save_with_layers(const struct job *job, const struct render_request *single,
-                                    whit_renderer *renderer, const whit_stats *stats)
-{
-    struct drawn_images images = {0};
-    whit_result result = render_save(job, single, renderer, &images, stats);
-    drawn_images_finish(&images);
-    return result;
-}
-
 /* `single`: the request with the file names of this frame. */
 static whit_result render_frame(struct job *job, const struct render_request *single,
                                 whit_renderer *renderer, uint32_t frame, struct sequence *sequence)
 {
     whit_stats stats;
+    struct drawn_images images = {0};
     whit_result result = whit_renderer_set_time(renderer, job->settings.picture.time_s);
     if (result == WHIT_OK)
         result = whit_renderer_render(renderer);
@@ -196,7 +168,8 @@ static whit_result render_frame(struct job *job, const struct render_request *si
         return result;
     double start_ms = whit_clock_ms();
     whit_renderer_get_stats(renderer, &stats);
-    result = save_with_layers(job, single, renderer, &stats);
+    result = render_save(job, single, renderer, &images, &stats);
+    drawn_images_finish(&images);
     if (result != WHIT_OK)
         return result;
     double save_ms = whit_clock_ms() - start_ms;

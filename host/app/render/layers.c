@@ -10,11 +10,9 @@
 whit_result layers_read(const whit_shader *shader, whit_renderer *renderer,
                         const whit_refine *refine, struct layers *layers)
 {
-    whit_shader_info info = {0};
+    const whit_shader_info info = job_shader_info(shader);
     whit_result result = WHIT_OK;
     *layers = (struct layers){0};
-    if (shader)
-        whit_shader_get_info(shader, &info);
     for (uint32_t i = 0; result == WHIT_OK && i < info.aov_count && i < LAYERS_MAX; ++i) {
         whit_image **image = &layers->images[i];
         result = renderer ? whit_renderer_image(renderer, (whit_aov)(WHIT_AOV_SHADER + i), image)
@@ -45,18 +43,17 @@ void drawn_images_finish(struct drawn_images *images)
 bool layers_check(const struct job *job)
 {
     char list[512] = "";
-    whit_shader_info info = {0};
+    const whit_shader_info info = job_shader_info(job->shader);
     const char *wanted = job->settings.aov;
     if (!wanted[0])
         return true;
-    whit_shader_get_info(job->shader, &info);
     for (uint32_t i = 0; i < info.aov_count; ++i) {
         if (strcmp(info.aovs[i], wanted) == 0)
             return true;
         text_add(list, sizeof list, "%s%s", i ? ", " : ": there is ", info.aovs[i]);
     }
-    cli_error("--aov %s: %s has no such `//@ aov`%s", wanted, job->settings.shader, list);
-    return false;
+    return CLI_FAIL(false, "--aov %s: %s has no such `//@ aov`%s", wanted, job->settings.shader,
+                    list);
 }
 
 static whit_result leave_alpha_out(const whit_image *image, whit_image **out)

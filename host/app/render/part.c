@@ -1,6 +1,5 @@
 #include "app/render/part.h"
 
-#include <ctype.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +11,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/path.h"
+#include "base/text.h"
 #include "whit/whit_program.h"
 
 /* ---- Options ---- */
@@ -21,21 +21,11 @@ bool part_is_given(const struct part *part)
     return part->tiles || part->sets;
 }
 
-static const char *read_count(const char *text, uint32_t *out)
-{
-    char *end;
-    unsigned long value = isdigit((unsigned char)*text) ? strtoul(text, &end, 10) : 0;
-    if (value < 1 || value > UINT16_MAX)
-        return NULL;
-    *out = (uint32_t)value;
-    return end;
-}
-
 static bool read_share(const char *value, uint32_t *index, uint32_t *count, char *why)
 {
-    const char *text = read_count(value, index);
-    text = text && *text == '/' ? read_count(text + 1, count) : NULL;
-    if (text && !*text && *index <= *count)
+    const char *text = text_number(value, UINT16_MAX, index);
+    text = text && *text == '/' ? text_number(text + 1, UINT16_MAX, count) : NULL;
+    if (text && !*text && *index >= 1 && *index <= *count)
         return true;
     *count = 0;
     return setting_refuse(why, " `%s`: I/N is needed, part I of N, such as 2/4", value);
@@ -118,10 +108,9 @@ bool part_check(struct cli_reader *reader, const struct job *job,
 
 bool part_check_shader(const struct job *job, const struct render_request *request)
 {
-    whit_shader_info info = {0};
-    if (!part_is_given(&request->part) || !job->shader)
+    const whit_shader_info info = job_shader_info(job->shader);
+    if (!part_is_given(&request->part))
         return true;
-    whit_shader_get_info(job->shader, &info);
     const char *what = NULL;
     if (info.aov_count && path_is(request->output, "exr") && !job->settings.aov[0])
         what = "its `//@ aov` images are kept beside the colours of whole pictures alone; .pfm and "
@@ -166,11 +155,6 @@ const char *part_name(const struct part *part, char text[64])
         snprintf(text + used, 64 - (size_t)used, "%ssamples %u/%u", used ? ", " : "", part->set,
                  part->sets);
     return text;
-}
-
-void part_sum(const struct part *part, uint32_t samples, whit_image *image)
-{
-    part_scale((float)(samples / part->sets), image);
 }
 
 void part_scale(float factor, whit_image *image)

@@ -37,9 +37,6 @@ void part_take(const struct part *part, whit_renderer_params *params);
 /* The part's name in messages, such as "tile 2/4, samples 1/16"; gives `text`. */
 const char *part_name(const struct part *part, char text[64]);
 
-/* Turns the image's means over the part's samples into sums. `samples`: those of the whole
-   picture. */
-void part_sum(const struct part *part, uint32_t samples, whit_image *image);
 /* Colours times `factor`; alpha stays. */
 void part_scale(float factor, whit_image *image);
 

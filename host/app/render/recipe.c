@@ -4,6 +4,7 @@
 
 #include "app/render/recipe.h"
 #include "app/settings_json.h"
+#include "base/array.h"
 
 enum { COMMAND_BYTES = 16384 };
 
@@ -53,7 +54,8 @@ char *recipe_counters(const whit_stats *stats)
     return document_line(counters);
 }
 
-static void add(struct recipe *recipe, const char *key, const char *value)
+/* Takes over `value`. */
+static void add(struct recipe *recipe, const char *key, char *value)
 {
     recipe->texts[recipe->count++] = (whit_text){.key = key, .value = value};
 }
@@ -63,11 +65,12 @@ static void add(struct recipe *recipe, const char *key, const char *value)
 static void add_functions(struct recipe *recipe, const whit_shader *shader, const char *output)
 {
     const char *why;
-    recipe->functions = shader ? whit_shader_pack(shader, &why) : NULL;
-    if (recipe->functions)
-        add(recipe, WHIT_SHADER_KEY, recipe->functions);
+    char *functions = shader ? whit_shader_pack(shader, &why) : NULL;
+    if (functions)
+        add(recipe, WHIT_SHADER_KEY, string_copy(functions));
     else if (shader)
         cli_warning("%s: the functions are not kept in it: %s", output, why);
+    whit_memory_destroy(functions);
 }
 
 bool recipe_init(struct recipe *recipe, const struct settings *settings, const whit_scene *scene,
@@ -75,32 +78,27 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
                  const char *output)
 {
     whit_scene_info info;
-    *recipe = (struct recipe){.device = *device};
+    *recipe = (struct recipe){.count = 0};
     whit_scene_get_info(scene, &info);
-    snprintf(recipe->hash, sizeof recipe->hash, "%016" PRIx64, info.hash);
-    recipe->command = command_line(settings, output);
-    recipe->options = options_line(settings);
-    recipe->counters = stats ? recipe_counters(stats) : NULL;
+    add(recipe, "Software", string_copy("whit " WHIT_VERSION));
+    add(recipe, "whit:command", command_line(settings, output));
     /* Other programs print the texts of pictures unescaped. */
-    recipe->scene = strdup(cli_shown(settings->scene));
-    recipe->name = strdup(cli_shown(recipe->device.name));
-    recipe->driver = strdup(cli_shown(recipe->device.driver));
-    if (!recipe->command || !recipe->scene || !recipe->name || !recipe->driver) {
+    add(recipe, "whit:device", string_copy(cli_shown(device->name)));
+    add(recipe, "whit:driver", string_copy(cli_shown(device->driver)));
+    add(recipe, "whit:scene", string_copy(cli_shown(settings->scene)));
+    add(recipe, "whit:scene_hash", string_format("%016" PRIx64, info.hash));
+    add(recipe, "whit:options", options_line(settings));
+    if (stats)
+        add(recipe, "whit:counters", recipe_counters(stats));
+    if (settings->shader[0])
+        add_functions(recipe, shader, output);
+    for (uint32_t i = 0; i < recipe->count; ++i) {
+        if (recipe->texts[i].value)
+            continue;
         cli_error("out of memory");
         recipe_finish(recipe);
         return false;
     }
-    add(recipe, "Software", "whit " WHIT_VERSION);
-    add(recipe, "whit:command", recipe->command);
-    add(recipe, "whit:device", recipe->name);
-    add(recipe, "whit:driver", recipe->driver);
-    add(recipe, "whit:scene", recipe->scene);
-    add(recipe, "whit:scene_hash", recipe->hash);
-    add(recipe, "whit:options", recipe->options);
-    if (stats)
-        add(recipe, "whit:counters", recipe->counters);
-    if (settings->shader[0])
-        add_functions(recipe, shader, output);
     return true;
 }
 
@@ -113,23 +111,19 @@ void recipe_add_view(struct recipe *recipe, const struct settings *settings,
     document_number(object, "scale", figures->scale);
     document_number(object, "mean", figures->mean);
     document_number(object, "max", figures->max);
-    recipe->view = document_line(object);
-    add(recipe, "whit:view", recipe->view);
+    add(recipe, "whit:view", document_line(object));
 }
 
 void recipe_add_part(struct recipe *recipe, const struct part *part,
                      const struct settings *settings)
 {
-    if (!part_is_given(part))
-        return;
-    recipe->part = document_line(part_document(part, settings));
-    add(recipe, PART_KEY, recipe->part);
+    if (part_is_given(part))
+        add(recipe, PART_KEY, document_line(part_document(part, settings)));
 }
 
 void recipe_add_camera(struct recipe *recipe, json_t *camera)
 {
-    recipe->camera = document_line(camera);
-    add(recipe, VIEW_CAMERA_KEY, recipe->camera);
+    add(recipe, VIEW_CAMERA_KEY, document_line(camera));
 }
 
 const char *recipe_text(const whit_text *texts, uint32_t count, const char *key)
@@ -143,15 +137,7 @@ const char *recipe_text(const whit_text *texts, uint32_t count, const char *key)
 
 void recipe_finish(struct recipe *recipe)
 {
-    free(recipe->part);
-    free(recipe->camera);
-    free(recipe->scene);
-    free(recipe->name);
-    free(recipe->driver);
-    free(recipe->view);
-    free(recipe->command);
-    free(recipe->options);
-    free(recipe->counters);
-    whit_memory_destroy(recipe->functions);
-    *recipe = (struct recipe){0};
+    for (uint32_t i = 0; i < recipe->count; ++i)
+        free((char *)recipe->texts[i].value);
+    *recipe = (struct recipe){.count = 0};
 }

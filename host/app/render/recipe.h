@@ -14,12 +14,8 @@
    inputs give the same bytes. */
 enum { RECIPE_TEXTS = 11 };
 struct recipe {
-    whit_text texts[RECIPE_TEXTS];
+    whit_text texts[RECIPE_TEXTS]; /* their values are owned */
     uint32_t count;
-    char *command, *options, *counters, *view, *part, *camera, *scene, *name, *driver,
-        *functions; /* owned */
-    char hash[17];
-    whit_device_info device;
 };
 
 /* False when memory ran out, with a message. `shader`: NULL without one. `output`: its ending is

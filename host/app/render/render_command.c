@@ -1,5 +1,4 @@
 #include <ctype.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -139,14 +138,11 @@ static bool check_outputs(struct cli_reader *reader, const struct settings *sett
 
 static whit_result check_own_camera(const char *text, const whit_camera *camera)
 {
-    if (memcmp(camera->eye, camera->target, sizeof camera->eye) == 0) {
-        cli_error("--camera `%s`: eye and target are the same point", text);
-        return WHIT_ERROR_USAGE;
-    }
-    if (!(camera->fov_y_degrees > 0.0 && camera->fov_y_degrees < 180.0)) {
-        cli_error("--camera `%s`: the angle must be between 0 and 180 degrees", text);
-        return WHIT_ERROR_USAGE;
-    }
+    if (memcmp(camera->eye, camera->target, sizeof camera->eye) == 0)
+        return CLI_FAIL(WHIT_ERROR_USAGE, "--camera `%s`: eye and target are the same point", text);
+    if (!(camera->fov_y_degrees > 0.0 && camera->fov_y_degrees < 180.0))
+        return CLI_FAIL(WHIT_ERROR_USAGE,
+                        "--camera `%s`: the angle must be between 0 and 180 degrees", text);
     return WHIT_OK;
 }
 
@@ -205,10 +201,7 @@ whit_result render_check_camera(const struct job *job)
    picture is done. */
 static bool expects_something(const whit_shader *shader)
 {
-    whit_shader_info info = {.expectation_count = 0};
-    if (shader)
-        whit_shader_get_info(shader, &info);
-    return info.expectation_count > 0;
+    return job_shader_info(shader).expectation_count > 0;
 }
 
 /* Whether nothing but colours is read from the renderer. */
@@ -287,8 +280,8 @@ static whit_result save_own_colors(whit_renderer *renderer, const struct setting
 {
     whit_image *image;
     whit_result result = whit_renderer_borrow_color(renderer, &image);
-    if (result == WHIT_OK && request->part.sets)
-        part_sum(&request->part, settings->picture.sampling.count, image);
+    if (result == WHIT_OK && request->part.sets) /* sums in place of means over its samples */
+        part_scale((float)(settings->picture.sampling.count / request->part.sets), image);
     if (result == WHIT_OK)
         result = save_colors(renderer, settings, request, image, images, recipe);
     whit_image_destroy(image);
@@ -351,7 +344,7 @@ whit_result render_save(const struct job *job, const struct render_request *requ
         result = images->color
                      ? save_colors(renderer, settings, request, images->color, images, &recipe)
                      : save_own_colors(renderer, settings, request, images, &recipe);
-    if (result == WHIT_OK && recipe.part && path_is(request->output, "pfm"))
+    if (result == WHIT_OK && part_is_given(&request->part) && path_is(request->output, "pfm"))
         result = part_save_beside(request->output, &recipe);
     recipe_finish(&recipe);
     return result;

@@ -80,19 +80,13 @@ static bool read_command(struct recipe_read *recipe, const char *command, struct
     reader.left = recipe->left;
     reader.left_bytes = sizeof recipe->left;
     *settings = settings_usual();
-    if (!cli_read(&reader, NULL, settings)) {
-        cli_error("%s", said);
-        return false;
-    }
-    if (!settings_check(settings, why)) {
-        cli_error("%s: %s", recipe->picture, why);
-        return false;
-    }
+    if (!cli_read(&reader, NULL, settings))
+        return CLI_FAIL(false, "%s", said);
+    if (!settings_check(settings, why))
+        return CLI_FAIL(false, "%s: %s", recipe->picture, why);
     const char *scene = reader.positional ? reader.positional : "";
-    if (!scene[0] || strlen(scene) >= sizeof settings->scene) {
-        cli_error("%s: its recipe has no scene", recipe->picture);
-        return false;
-    }
+    if (!scene[0] || strlen(scene) >= sizeof settings->scene)
+        return CLI_FAIL(false, "%s: its recipe has no scene", recipe->picture);
     memcpy(settings->scene, scene, strlen(scene) + 1);
     return true;
 }
@@ -138,20 +132,16 @@ static bool find_others(const struct recipe_read *recipe, struct settings *setti
     const char *why = settings->environment[0] ? find_file(recipe->picture, settings->environment,
                                                            sizeof settings->environment)
                                                : NULL;
-    if (why) {
-        cli_error("%s: --environment `%s`: %s", recipe->picture, settings->environment, why);
-        return false;
-    }
+    if (why)
+        return CLI_FAIL(false, "%s: --environment `%s`: %s", recipe->picture, settings->environment,
+                        why);
     if (!settings->shader[0])
         return true;
-    if (!recipe_text(recipe->texts, recipe->text_count, WHIT_SHADER_KEY)) {
-        cli_error("%s: the functions that it was made with are not in it", recipe->picture);
-        return false;
-    }
-    if (strlen(recipe->picture) >= sizeof settings->shader) {
-        cli_error("%s: the path is too long", recipe->picture);
-        return false;
-    }
+    if (!recipe_text(recipe->texts, recipe->text_count, WHIT_SHADER_KEY))
+        return CLI_FAIL(false, "%s: the functions that it was made with are not in it",
+                        recipe->picture);
+    if (strlen(recipe->picture) >= sizeof settings->shader)
+        return CLI_FAIL(false, "%s: the path is too long", recipe->picture);
     strcpy(settings->shader, recipe->picture);
     return true;
 }
@@ -192,12 +182,12 @@ static void tell(const struct recipe_read *recipe, const struct settings *settin
 static bool ask(const struct recipe_read *recipe)
 {
     char answer[16];
-    if (!isatty(STDIN_FILENO) || !isatty(STDERR_FILENO)) {
-        cli_error("%s: whit asks before it loads what a picture says, and there is no terminal to "
-                  "ask at; --yes says yes",
-                  recipe->picture);
-        return false;
-    }
+    if (!isatty(STDIN_FILENO) || !isatty(STDERR_FILENO))
+        return CLI_FAIL(
+            false,
+            "%s: whit asks before it loads what a picture says, and there is no terminal to "
+            "ask at; --yes says yes",
+            recipe->picture);
     fprintf(stderr, "Load and compile it? [y/N] ");
     bool yes =
         fgets(answer, sizeof answer, stdin) &&
@@ -231,12 +221,11 @@ static bool load(struct recipe_read *recipe, const struct job *job, struct setti
                               &recipe->text_count) != WHIT_OK)
         return false;
     const char *command = recipe_text(recipe->texts, recipe->text_count, "whit:command");
-    if (recipe_text(recipe->texts, recipe->text_count, VIEW_CAMERA_KEY)) {
-        cli_error("%s: its camera is one that --camera has no words for; " VIEW_CAMERA_KEY
-                  " in its recipe is a line for a file of --cameras",
-                  recipe->picture);
-        return false;
-    }
+    if (recipe_text(recipe->texts, recipe->text_count, VIEW_CAMERA_KEY))
+        return CLI_FAIL(false,
+                        "%s: its camera is one that --camera has no words for; " VIEW_CAMERA_KEY
+                        " in its recipe is a line for a file of --cameras",
+                        recipe->picture);
     if (!command)
         cli_error("%s: a picture without a recipe of whit's in it", recipe->picture);
     return command && read_command(recipe, command, settings);

@@ -1,10 +1,90 @@
 #include <string.h>
 
 #include "app/document.h"
-#include "app/render/costs.h"
 #include "app/render/stats.h"
 #include "app/settings_json.h"
 #include "base/platform.h"
+
+/* ---- Costs by kind of ray ---- */
+
+enum { FIGURES = 7 };
+static const char *const figure_names[FIGURES] = {"inner_nodes", "boxes", "leaves", "triangles",
+                                                  "instances",   "stack", "depth"};
+
+/* Means per ray; for stack and depth, means per sample of a pixel. */
+static void find_means(const whit_cost *cost, double out[FIGURES])
+{
+    double rays = cost->rays ? (double)cost->rays : 1.0;
+    double records = cost->records ? (double)cost->records : 1.0;
+    out[0] = (double)cost->inner_nodes / rays;
+    out[1] = 2.0 * out[0];
+    out[2] = (double)cost->leaves / rays;
+    out[3] = (double)cost->triangles / rays;
+    out[4] = (double)cost->instances / rays;
+    out[5] = (double)cost->stack_sum / records;
+    out[6] = (double)cost->depth_sum / records;
+}
+
+/* The largest in one sample of a pixel. */
+static void find_max(const whit_cost *cost, uint64_t out[FIGURES])
+{
+    out[0] = cost->max_inner_nodes;
+    out[1] = 2 * (uint64_t)cost->max_inner_nodes;
+    out[2] = cost->max_leaves;
+    out[3] = cost->max_triangles;
+    out[4] = cost->max_instances;
+    out[5] = cost->stack;
+    out[6] = cost->depth;
+}
+
+static void print_kind(const char *name, const whit_cost *cost)
+{
+    double means[FIGURES];
+    uint64_t max[FIGURES];
+    find_means(cost, means);
+    find_max(cost, max);
+    printf("  %-10s %10llu", name, (unsigned long long)cost->rays);
+    for (int i = 0; i < FIGURES; ++i)
+        printf(" %9.2f", means[i]);
+    printf("\n  %-10s %10s", "", "most");
+    for (int i = 0; i < FIGURES; ++i)
+        printf(" %9llu", (unsigned long long)max[i]);
+    putchar('\n');
+}
+
+static void print_costs(const whit_stats *stats)
+{
+    printf("costs of a ray: means, and most in one sample of a pixel\n  %-10s %10s", "", "rays");
+    for (int i = 0; i < FIGURES; ++i)
+        printf(" %9s", figure_names[i]);
+    putchar('\n');
+    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind) {
+        if (stats->costs[kind].rays)
+            print_kind(value_word(values_rays, kind), &stats->costs[kind]);
+    }
+}
+
+static void put_kind(json_t *kind, const whit_cost *cost)
+{
+    double means[FIGURES];
+    uint64_t max[FIGURES];
+    find_means(cost, means);
+    find_max(cost, max);
+    document_count(kind, "rays", cost->rays);
+    json_t *mean = document_child(kind, "mean"), *largest = document_child(kind, "max");
+    for (int i = 0; i < FIGURES; ++i) {
+        document_number(mean, figure_names[i], means[i]);
+        document_count(largest, figure_names[i], max[i]);
+    }
+}
+
+static void put_costs(json_t *costs, const whit_stats *stats)
+{
+    for (int kind = 0; kind < WHIT_RAY_KINDS; ++kind)
+        put_kind(document_child(costs, value_word(values_rays, kind)), &stats->costs[kind]);
+}
+
+/* ---- All figures ---- */
 
 struct figures {
     whit_scene_info scene;
@@ -14,27 +94,11 @@ struct figures {
     const whit_stats *render;
     const struct sequence *sequence; /* or NULL */
     const struct refined *refined;   /* likewise */
-    double save_ms, total_ms;
-    uint64_t rays;
+    double save_ms;
 };
 
-static void collect(const struct job *job, const whit_renderer *renderer, const whit_stats *stats,
-                    double save_ms, struct figures *out)
+static void put_times(json_t *times, const struct job *job, const struct figures *figures)
 {
-    out->render = stats;
-    out->save_ms = save_ms;
-    whit_scene_get_info(job->scene, &out->scene);
-    whit_accel_get_info(job->accel, &out->tree);
-    whit_device_get_info(job->device, &out->device);
-    out->rays = whit_stats_rays(stats);
-    out->total_ms = whit_clock_ms() - job->start_ms;
-    if (whit_renderer_get_kernel(renderer, &out->kernel) != WHIT_OK)
-        out->kernel = (whit_kernel_info){0};
-}
-
-static json_t *times_document(const struct job *job, const struct figures *figures)
-{
-    json_t *times = document_object();
     document_ms(times, "load_ms", job->load_ms);
     document_ms(times, "build_ms", figures->tree.build_ms);
     document_ms(times, "build_instances_ms", figures->tree.instance_build_ms);
@@ -44,43 +108,36 @@ static json_t *times_document(const struct job *job, const struct figures *figur
     document_ms(times, "render_ms", figures->render->render_ms);
     document_ms(times, "render_device_ms", document_known(figures->render->render_device_ms));
     document_ms(times, "save_ms", figures->save_ms);
-    document_ms(times, "total_ms", figures->total_ms);
-    return times;
+    document_ms(times, "total_ms", whit_clock_ms() - job->start_ms);
 }
 
-static json_t *scene_document(const struct job *job, const struct figures *figures)
+static void put_scene(json_t *scene, const struct job *job, const struct figures *figures)
 {
-    json_t *scene = document_object();
     document_text(scene, "file", job->settings.scene);
     document_hash(scene, "hash", figures->scene.hash);
     document_count(scene, "file_bytes", figures->scene.file_bytes);
     document_count(scene, "instances", figures->scene.instance_count);
     document_count(scene, "triangles", figures->scene.triangle_count);
-    return scene;
 }
 
-static json_t *picture_document(const struct job *job, const struct render_request *request)
+static void put_picture(json_t *picture, const struct job *job,
+                        const struct render_request *request)
 {
-    json_t *picture = document_object();
     document_text(picture, "file", request->output);
     document_text(picture, "ids", request->ids);
     settings_describe(&job->settings, IN_RENDER, picture);
-    return picture;
 }
 
 /* The number of rays that were not traced, and the largest weight that they could have added to a
    pixel. */
-static json_t *cut_document(uint64_t count, double weight)
+static void put_cut(json_t *cut, uint64_t count, double weight)
 {
-    json_t *cut = document_object();
     document_count(cut, "rays", count);
     document_number(cut, "weight_of_a_pixel", weight);
-    return cut;
 }
 
-static json_t *rays_document(const struct job *job, const struct figures *figures)
+static void put_rays(json_t *rays, const struct job *job, const struct figures *figures)
 {
-    json_t *rays = document_object();
     document_count(rays, "primary", figures->render->rays_primary);
     document_count(rays, "shadow", figures->render->rays_shadow);
     document_count(rays, "reflected", figures->render->rays_reflected);
@@ -88,20 +145,17 @@ static json_t *rays_document(const struct job *job, const struct figures *figure
     document_count(rays, "straight", figures->render->rays_straight);
     if (job->shader)
         document_count(rays, "by_functions", figures->render->rays_by_functions);
-    document_count(rays, "total", figures->rays);
+    document_count(rays, "total", whit_stats_rays(figures->render));
     document_number(rays, "mrays_per_s", figures->render->mrays_per_s);
-    document_put(rays, "cut_by_depth",
-                 cut_document(figures->render->rays_cut_depth, figures->render->weight_cut_depth));
-    document_put(
-        rays, "cut_by_bailout",
-        cut_document(figures->render->rays_cut_bailout, figures->render->weight_cut_bailout));
+    put_cut(document_child(rays, "cut_by_depth"), figures->render->rays_cut_depth,
+            figures->render->weight_cut_depth);
+    put_cut(document_child(rays, "cut_by_bailout"), figures->render->rays_cut_bailout,
+            figures->render->weight_cut_bailout);
     document_number(rays, "bailout_bound", document_known(figures->render->bailout_bound));
-    return rays;
 }
 
-static json_t *kernel_document(const struct figures *figures)
+static void put_kernel(json_t *kernel, const struct figures *figures)
 {
-    json_t *kernel = document_object();
     document_count(kernel, "instructions", figures->kernel.instructions);
     document_count(kernel, "largest_instructions", figures->kernel.largest_instructions);
     document_count(kernel, "general_instructions", figures->kernel.general_instructions);
@@ -109,7 +163,6 @@ static json_t *kernel_document(const struct figures *figures)
     document_count(kernel, "bindings", figures->kernel.bindings);
     document_count(kernel, "general_bindings", figures->kernel.general_bindings);
     document_flag(kernel, "general", figures->render->general);
-    return kernel;
 }
 
 /* The shares that materials have in the time of a shading kernel; NULL where the stage is no
@@ -132,9 +185,8 @@ static json_t *shares_document(const struct job *job, const struct figures *figu
     return shares;
 }
 
-static json_t *stages_document(const struct job *job, const struct figures *figures)
+static void put_stages(json_t *stages, const struct job *job, const struct figures *figures)
 {
-    json_t *stages = document_array();
     for (int i = 0; i < WHIT_STAGES; ++i) {
         const whit_stage *stage = &figures->render->stages[i];
         if (!stage->rays)
@@ -147,34 +199,28 @@ static json_t *stages_document(const struct job *job, const struct figures *figu
         if (shares)
             document_put(object, "shares", shares);
     }
-    return stages;
 }
 
-static json_t *pixels_document(const struct figures *figures)
+static void put_pixels(json_t *pixels, const struct figures *figures)
 {
     static const char *const samples[] = {"1", "4", "16", "64"};
-    json_t *pixels = document_object();
     for (int i = 0; i < 4; ++i)
         document_count(pixels, samples[i], figures->render->pixels_by_samples[i]);
-    return pixels;
 }
 
-static json_t *refined_document(const struct figures *figures)
+static void put_refined(json_t *object, const struct figures *figures)
 {
     const struct refined *refined = figures->refined;
-    json_t *object = document_object();
     document_count(object, "samples", refined->now.samples);
     document_number(object, "rmse_estimate", document_known(refined->now.error));
     document_number(object, "rmse_estimate_of_cuts", document_known(refined->now.error_of_cuts));
     document_number(object, "cut_radiance", refined->now.cut_radiance);
     document_count(object, "estimate_rays", figures->render->rays_of_estimate);
     document_flag(object, "reached", refined->reached);
-    return object;
 }
 
-static json_t *tree_document(const whit_accel_info *info)
+static void put_tree(json_t *tree, const whit_accel_info *info)
 {
-    json_t *tree = document_object();
     document_flag(tree, "one", info->one_tree);
     document_count(tree, "nodes", info->node_count);
     document_count(tree, "leaves", info->leaf_count);
@@ -184,7 +230,6 @@ static json_t *tree_document(const whit_accel_info *info)
     document_count(tree, "instance_depth", info->instance_depth);
     document_number(tree, "sah_cost", info->sah_cost);
     document_count(tree, "bytes", info->bytes);
-    return tree;
 }
 
 static void put_frame_times(json_t *object, const struct frame_times *times)
@@ -195,9 +240,8 @@ static void put_frame_times(json_t *object, const struct frame_times *times)
     document_ms(object, "save_ms", times->save_ms);
 }
 
-static json_t *frames_document(const struct job *job, const struct sequence *sequence)
+static void put_frames(json_t *frames, const struct job *job, const struct sequence *sequence)
 {
-    json_t *frames = document_object();
     document_count(frames, "count", sequence->count);
     document_count(frames, "kept", sequence->kept);
     document_number(frames, "fps", job->settings.fps);
@@ -209,29 +253,28 @@ static json_t *frames_document(const struct job *job, const struct sequence *seq
         document_number(frame, "time_s", sequence->each[i].time_s);
         put_frame_times(frame, &sequence->each[i]);
     }
-    return frames;
 }
 
 static int print_json(const struct job *job, const struct render_request *request,
                       const struct figures *figures)
 {
     json_t *root = document_root();
-    document_put(root, "scene", scene_document(job, figures));
-    document_put(root, "picture", picture_document(job, request));
+    put_scene(document_child(root, "scene"), job, figures);
+    put_picture(document_child(root, "picture"), job, request);
     document_put(root, "device", document_device(&figures->device));
-    document_put(root, "times", times_document(job, figures));
-    document_put(root, "rays", rays_document(job, figures));
-    document_put(root, "stages", stages_document(job, figures));
-    document_put(root, "kernel", kernel_document(figures));
+    put_times(document_child(root, "times"), job, figures);
+    put_rays(document_child(root, "rays"), job, figures);
+    put_stages(document_list(root, "stages"), job, figures);
+    put_kernel(document_child(root, "kernel"), figures);
     if (job->settings.picture.sampling.kind == WHIT_SAMPLING_ADAPTIVE)
-        document_put(root, "pixels_by_samples", pixels_document(figures));
+        put_pixels(document_child(root, "pixels_by_samples"), figures);
     if (job->settings.paint != PAINT_COLOR || request->counters)
-        document_put(root, "costs", costs_document(figures->render));
-    document_put(root, "tree", tree_document(&figures->tree));
+        put_costs(document_child(root, "costs"), figures->render);
+    put_tree(document_child(root, "tree"), &figures->tree);
     if (figures->refined)
-        document_put(root, "refine", refined_document(figures));
+        put_refined(document_child(root, "refine"), figures);
     if (figures->sequence)
-        document_put(root, "frames", frames_document(job, figures->sequence));
+        put_frames(document_child(root, "frames"), job, figures->sequence);
     if (part_is_given(&request->part))
         document_put(root, "part", part_document(&request->part, &job->settings));
     json_t *work = document_child(root, "work");
@@ -247,25 +290,25 @@ static int print_json(const struct job *job, const struct render_request *reques
     return cli_print_json(root);
 }
 
-static void print_time(const char *name, double ms, const char *about)
+static void print_time(const char *name, double ms)
 {
-    printf("  %-18s %10.1f ms%s%s\n", name, ms, about[0] ? "   " : "", about);
+    printf("  %-18s %10.1f ms\n", name, ms);
 }
 
 static void print_times(const struct job *job, const struct figures *figures)
 {
     puts("times");
-    print_time("load", job->load_ms, "");
-    print_time("build", figures->tree.build_ms, "");
-    print_time("build instances", figures->tree.instance_build_ms, "");
-    print_time("device", job->device_ms, "");
-    print_time("upload", figures->render->upload_ms, "");
-    print_time("compile", figures->render->compile_ms, "");
-    print_time("render", figures->render->render_ms, "");
+    print_time("load", job->load_ms);
+    print_time("build", figures->tree.build_ms);
+    print_time("build instances", figures->tree.instance_build_ms);
+    print_time("device", job->device_ms);
+    print_time("upload", figures->render->upload_ms);
+    print_time("compile", figures->render->compile_ms);
+    print_time("render", figures->render->render_ms);
     if (figures->render->render_device_ms >= 0.0)
-        print_time("  on the device", figures->render->render_device_ms, "");
-    print_time("save", figures->save_ms, "");
-    print_time("total", figures->total_ms, "");
+        print_time("  on the device", figures->render->render_device_ms);
+    print_time("save", figures->save_ms);
+    print_time("total", whit_clock_ms() - job->start_ms);
 }
 
 /* Prints nothing where no ray was cut. */
@@ -288,8 +331,8 @@ static void print_rays(const struct figures *figures)
     if (figures->render->rays_by_functions)
         printf("  %-18s %10llu\n", "by functions",
                (unsigned long long)figures->render->rays_by_functions);
-    printf("  %-18s %10llu   %.2f Mray/s\n", "total", (unsigned long long)figures->rays,
-           figures->render->mrays_per_s);
+    printf("  %-18s %10llu   %.2f Mray/s\n", "total",
+           (unsigned long long)whit_stats_rays(figures->render), figures->render->mrays_per_s);
     print_cut("cut by --depth", figures->render->rays_cut_depth, figures->render->weight_cut_depth);
     print_cut("cut by --bailout", figures->render->rays_cut_bailout,
               figures->render->weight_cut_bailout);
@@ -412,7 +455,7 @@ static int print_text(const struct job *job, const struct render_request *reques
         print_refined(figures);
     print_kernel(figures);
     if (job->settings.paint != PAINT_COLOR || request->counters)
-        costs_print(figures->render);
+        print_costs(figures->render);
     printf("trees\n  %s%u nodes, %u leaves, %u triangles, depth %u + %u, SAH cost %.2f\n",
            tree->one_tree ? "one in world space: " : "", tree->node_count, tree->leaf_count,
            tree->triangle_count, tree->instance_depth, tree->depth, tree->sah_cost);
@@ -434,13 +477,15 @@ int stats_print(const struct job *job, const struct render_request *request,
                 const whit_renderer *renderer, const whit_stats *stats, double save_ms,
                 const struct sequence *sequence, const struct refined *refined)
 {
-    struct figures figures = {.sequence = sequence, .refined = refined};
+    struct figures figures = {
+        .render = stats, .sequence = sequence, .refined = refined, .save_ms = save_ms};
     if (job->settings.stats == STATS_NONE)
         return EXIT_FINE;
-    collect(job, renderer, stats, save_ms, &figures);
-    if (job->settings.stats == STATS_JSON)
-        return print_json(job, request, &figures);
-    if (job->settings.stats == STATS_TEXT)
-        return print_text(job, request, &figures);
-    return EXIT_FINE;
+    whit_scene_get_info(job->scene, &figures.scene);
+    whit_accel_get_info(job->accel, &figures.tree);
+    whit_device_get_info(job->device, &figures.device);
+    if (whit_renderer_get_kernel(renderer, &figures.kernel) != WHIT_OK)
+        figures.kernel = (whit_kernel_info){0};
+    return job->settings.stats == STATS_JSON ? print_json(job, request, &figures)
+                                             : print_text(job, request, &figures);
 }
