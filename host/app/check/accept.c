@@ -1,5 +1,4 @@
 /* Accepts drawn pictures into the golden. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "app/check/accept.h"
@@ -46,10 +45,7 @@ static bool put_case(struct check *check, const struct check_result *result)
     item.reason = old ? old->reason : NULL;
     if (is_new)
         item.reason = check->reason ? whit_text_show(check->reason, shown, sizeof shown) : NULL;
-    item.reason = string_copy(item.reason); /* a copy, because golden_put frees the old case */
-    bool put = golden_put(&check->golden, &item) && put_parts(&check->golden, &result->found);
-    free(item.reason);
-    return put;
+    return golden_put(&check->golden, &item) && put_parts(&check->golden, &result->found);
 }
 
 /* Marks a case of the saved golden as accepted, and saves its thumbnail. A thumbnail of a former

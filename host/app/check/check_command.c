@@ -372,7 +372,7 @@ static whit_result draw_case(struct check *check, struct studio *studio, uint32_
     result->error = drawn;
     if (trial_ends_all(drawn)) { /* the result may be incomplete */
         verdict_finish(result);
-        *result = (struct check_result){.item = result->item, .error = drawn};
+        result->error = drawn;
     }
     return drawn;
 }

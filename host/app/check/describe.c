@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "app/check/describe.h"
-#include "base/array.h"
 #include "base/hash.h"
 
 enum { KEY_BYTES = 2048 };
@@ -128,17 +127,15 @@ static bool fill(const struct drawing *drawing, const struct check_case *item, s
                                            stats->rays_reflected, stats->rays_refracted};
     whit_image_info info;
     whit_image_get_info(drawing->ids, &info);
-    struct golden_case one = {.name = string_copy(item->name),
+    struct golden_case one = {.name = item->name,
                               .ids = drawing->ids_hash,
                               .colors = drawing->color_hash,
                               .width = info.width,
                               .height = info.height,
-                              .made_by = string_copy(item->made_by)};
+                              .made_by = item->made_by};
     memcpy(one.rays, rays, sizeof rays);
     drawing_find_color(drawing, COLOR_MEAN, one.mean);
-    bool put = one.name && one.made_by && golden_put(found, &one);
-    golden_case_finish(&one);
-    return put && put_scene_parts(found, item, drawing->job.scene) &&
+    return golden_put(found, &one) && put_scene_parts(found, item, drawing->job.scene) &&
            put_shader_part(found, item, drawing->job.shader);
 }
 

@@ -69,7 +69,6 @@ static void draw_cases(void *context)
         bool drawn = lanes->draw(check, &studio, index) == WHIT_OK && !atomic_load(&lane->said);
         if (!drawn) {
             verdict_finish(result);
-            *result = (struct check_result){.item = result->item};
             studio_forget(&studio);
         }
         give(lanes, index, drawn);

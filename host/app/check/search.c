@@ -30,12 +30,12 @@ static whit_result try_set(struct sets *sets, uint32_t begin, uint32_t end, bool
     return search->draw(search->user, sets->back, enough);
 }
 
-/* Keeps in `left` only the changes from `begin` to `end` (`others`: all but these). */
-static void keep(struct sets *sets, uint32_t begin, uint32_t end, bool others)
+/* Keeps in `left` only the changes that were taken back last. */
+static void keep(struct sets *sets)
 {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < sets->count; ++i) {
-        if (others != (i >= begin && i < end))
+        if (sets->back[sets->left[i]])
             sets->left[kept++] = sets->left[i];
     }
     sets->count = kept;
@@ -52,7 +52,7 @@ static whit_result try_chunks(struct sets *sets, uint32_t chunks, bool others, b
         uint32_t end = (uint32_t)((uint64_t)sets->count * (i + 1) / chunks);
         result = try_set(sets, begin, end, others, found);
         if (result == WHIT_OK && *found)
-            keep(sets, begin, end, others);
+            keep(sets);
     }
     return result;
 }

@@ -46,6 +46,7 @@ void verdict_finish(struct check_result *result)
     free(result->changed);
     golden_finish(&result->found);
     check_pictures_finish(&result->pictures);
+    *result = (struct check_result){.item = result->item};
 }
 
 /* ---- What it is made of ---- */

@@ -45,6 +45,7 @@ void verdict_set(struct check_result *result, enum check_verdict verdict, char *
 void verdict_add(struct check_result *result, enum check_verdict verdict, char *text);
 /* The worse of the exit code `worst` and the case's own (docs/check.md). */
 int verdict_exit(const struct check_result *result, int worst);
+/* Only `item` stays. */
 void verdict_finish(struct check_result *result);
 
 #endif

@@ -109,14 +109,11 @@ static void complete(struct cost *cost)
     request->rays = cost->rays != COST_RAYS_UNSAID ? cost->rays
                     : cost->quick                  ? RAYS_QUICK
                                                    : RAYS_USUAL;
-    if (cost->under > 0.0)
-        request->goals[request->goal_count++] = (struct cost_goal){
-            .kind = COST_UNDER, .metric = (enum cost_metric)cost->metric, .limit = cost->under};
-    if (cost->within_ms > 0.0)
-        request->goals[request->goal_count++] =
-            (struct cost_goal){.kind = COST_WITHIN,
-                               .metric = (enum cost_metric)cost->metric,
-                               .limit = cost->within_ms};
+    const double limits[] = {[COST_UNDER] = cost->under, [COST_WITHIN] = cost->within_ms};
+    for (enum cost_goal_kind kind = COST_UNDER; kind <= COST_WITHIN; ++kind)
+        if (limits[kind] > 0.0)
+            request->goals[request->goal_count++] =
+                (struct cost_goal){kind, (enum cost_metric)cost->metric, limits[kind], 0.0};
     if (cost->html)
         cost_strip_ask(request);
 }

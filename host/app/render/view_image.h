@@ -4,8 +4,6 @@
 
 #include "app/cli.h"
 
-struct json_t;
-
 /* The mean, the largest value and the scale of a picture of costs. */
 struct view_figures {
     double mean, max, scale; /* mean and max over pixels; scale of the heat map, whether or not one
