@@ -43,10 +43,10 @@ static whit_result measure(struct job *job, struct cost_report **report)
 
 /* Gives the kept figures, or measures and keeps them. */
 static whit_result find_figures(struct job *job, bool fresh, const struct cost_place *place,
-                                const char *name, struct cost_kept *kept)
+                                struct cost_kept *kept)
 {
     struct cost_report *measured = NULL;
-    if (!fresh && cost_kept_load(place, name, kept)) {
+    if (cost_kept_load(place, kept) && !fresh) {
         if (!job->settings.quiet)
             cli_note("by figures of %s, kept with the scene; --fresh measures anew", kept->made);
         return WHIT_OK;
@@ -54,7 +54,7 @@ static whit_result find_figures(struct job *job, bool fresh, const struct cost_p
     whit_result result = measure(job, &measured);
     if (result == WHIT_OK) {
         cost_kept_begin(kept, measured);
-        cost_kept_save(kept, name);
+        cost_kept_save(kept);
     }
     cost_report_destroy(measured);
     return result;
@@ -313,8 +313,7 @@ static whit_result smooth_edges(const struct choosing *choosing, struct cost_kep
     return result;
 }
 
-static whit_result choose_within(const struct choosing *choosing, struct cost_kept *kept,
-                                 const char *name)
+static whit_result choose_within(const struct choosing *choosing, struct cost_kept *kept)
 {
     const struct cost_kept_choice *known = cost_kept_find(kept, choosing->before.budget_ms);
     struct cost_kept_choice found = {0};
@@ -331,7 +330,7 @@ static whit_result choose_within(const struct choosing *choosing, struct cost_ke
         return result;
     if (!known) {
         cost_kept_add(kept, &found);
-        cost_kept_save(kept, name);
+        cost_kept_save(kept);
     }
     say_choice(&found.choice, found.tried_ms);
     if (found.tried_ms > found.budget_ms)
@@ -353,8 +352,7 @@ static whit_result choose_under(const struct choosing *choosing)
 whit_result render_choose(struct job *job, const struct render_request *request,
                           struct frames_progress *progress, whit_renderer **renderer)
 {
-    char name[COST_KEPT_NAME];
-    struct cost_kept *kept = calloc(1, sizeof *kept);
+    struct cost_kept *kept = malloc(sizeof *kept);
     if (!kept)
         return cli_no_memory();
     const struct choosing choosing = {.job = job,
@@ -366,10 +364,9 @@ whit_result render_choose(struct job *job, const struct render_request *request,
     struct cost_place place = {.settings = &choosing.before};
     whit_scene_get_info(job->scene, &place.scene);
     whit_device_get_info(job->device, &place.device);
-    cost_kept_name(&place, name);
-    whit_result result = find_figures(job, request->fresh, &place, name, kept);
+    whit_result result = find_figures(job, request->fresh, &place, kept);
     if (result == WHIT_OK)
-        result = job->settings.budget_ms > 0.0 ? choose_within(&choosing, kept, name)
+        result = job->settings.budget_ms > 0.0 ? choose_within(&choosing, kept)
                                                : choose_under(&choosing);
     free(kept);
     return result;

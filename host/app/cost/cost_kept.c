@@ -11,9 +11,9 @@
 
 enum { KEPT_VERSION = 6 };
 
-/* The name is a hash of everything that decides pixels or time, except the settings that are
-   chosen. */
-void cost_kept_name(const struct cost_place *place, char name[COST_KEPT_NAME])
+/* The record's name is a hash of everything that decides pixels or time (scene, device, driver,
+   version of whit, settings), except the settings that are chosen. */
+static void find_name(const struct cost_place *place, char name[COST_KEPT_NAME])
 {
     char key[2048 + SETTING_TEXT_BYTES], line[1024 + SETTING_TEXT_BYTES];
     struct settings settings = *place->settings;
@@ -30,7 +30,9 @@ void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report)
 {
     time_t now = time(NULL);
     struct tm utc;
-    *kept = (struct cost_kept){.report = *report};
+    kept->report = *report;
+    kept->choice_count = 0;
+    kept->made[0] = '\0';
     if (gmtime_r(&now, &utc))
         strftime(kept->made, sizeof kept->made, "%Y-%m-%d %H:%M UTC", &utc);
 }
@@ -70,7 +72,7 @@ static void put_choice(json_t *out, const struct cost_kept_choice *kept)
                       knob_setting_name(&table[k], kept->choice.settings[k]));
 }
 
-void cost_kept_save(const struct cost_kept *kept, const char *name)
+void cost_kept_save(const struct cost_kept *kept)
 {
     if (!kept->report.complete)
         return;
@@ -81,7 +83,7 @@ void cost_kept_save(const struct cost_kept *kept, const char *name)
     for (uint32_t i = 0; i < kept->choice_count; ++i)
         put_choice(document_entry(choices), &kept->choices[i]);
     char *text = document_line(root);
-    store_write(&cli_log, name, text, strlen(text));
+    store_write(&cli_log, kept->name, text, strlen(text));
     free(text);
 }
 
@@ -121,7 +123,6 @@ static bool read_kept(json_t *root, struct cost_kept *kept)
     const json_t *choices = json_object_get(root, "choices"), *choice;
     const char *made = json_string_value(json_object_get(root, "made"));
     size_t i;
-    *kept = (struct cost_kept){0};
     bool good = cost_read(figures, &kept->report, NULL) && kept->report.complete && made;
     snprintf(kept->made, sizeof kept->made, "%s", made ? made : "");
     json_array_foreach(choices, i, choice)
@@ -133,11 +134,13 @@ static bool read_kept(json_t *root, struct cost_kept *kept)
     return good;
 }
 
-bool cost_kept_load(const struct cost_place *place, const char *name, struct cost_kept *kept)
+bool cost_kept_load(const struct cost_place *place, struct cost_kept *kept)
 {
     uint8_t *data;
     size_t bytes;
-    bool good = store_read(&cli_log, name, &data, &bytes) &&
+    *kept = (struct cost_kept){0};
+    find_name(place, kept->name);
+    bool good = store_read(&cli_log, kept->name, &data, &bytes) &&
                 read_kept(json_loadb((const char *)data, bytes, 0, NULL), kept);
     free(data);
     return good && kept->report.scene_hash == place->scene.hash &&
@@ -151,10 +154,8 @@ bool cost_kept_load(const struct cost_place *place, const char *name, struct cos
 
 bool cost_kept_load_figures(const struct cost_place *place, struct cost_kept_figures *figures)
 {
-    char name[COST_KEPT_NAME];
-    struct cost_kept *kept = calloc(1, sizeof *kept);
-    cost_kept_name(place, name);
-    bool found = kept && cost_kept_load(place, name, kept);
+    struct cost_kept *kept = malloc(sizeof *kept);
+    bool found = kept && cost_kept_load(place, kept);
     if (found) {
         const struct cost_kept_choice *choice = cost_kept_find(kept, place->settings->budget_ms);
         *figures = (struct cost_kept_figures){.report = kept->report};
@@ -172,17 +173,15 @@ bool cost_kept_load_figures(const struct cost_place *place, struct cost_kept_fig
 /* Choices kept for other budgets by the same figures stay. */
 void cost_kept_save_figures(const struct cost_place *place, const struct cost_kept_figures *figures)
 {
-    char name[COST_KEPT_NAME];
-    struct cost_kept *kept = calloc(1, sizeof *kept);
+    struct cost_kept *kept = malloc(sizeof *kept);
     if (!kept)
         return;
-    cost_kept_name(place, name);
-    if (!figures->made[0] || !cost_kept_load(place, name, kept))
+    if (!cost_kept_load(place, kept) || !figures->made[0])
         cost_kept_begin(kept, &figures->report);
     if (figures->choice.found)
         cost_kept_add(kept, &(struct cost_kept_choice){.budget_ms = place->settings->budget_ms,
                                                        .tried_ms = figures->choice_ms,
                                                        .choice = figures->choice});
-    cost_kept_save(kept, name);
+    cost_kept_save(kept);
     free(kept);
 }

@@ -10,18 +10,17 @@ struct cost_kept_choice {
     struct cost_choice choice;
 };
 struct cost_kept {
+    char name[COST_KEPT_NAME]; /* the record's in whit's cache: set by cost_kept_load */
     struct cost_report report;
     char made[32]; /* date of the measurement */
     uint32_t choice_count;
     struct cost_kept_choice choices[COST_KEPT_CHOICES];
 };
-/* The record's name in whit's cache, which differs for each scene, device, driver, version of whit,
-   and setting that decides pixels or time. */
-void cost_kept_name(const struct cost_place *place, char name[COST_KEPT_NAME]);
-/* False: there is no record, or it is damaged or belongs to something else. */
-bool cost_kept_load(const struct cost_place *place, const char *name, struct cost_kept *kept);
+/* Reads the record for the conditions. False: there is none, or it is damaged or belongs to
+   something else; cost_kept_begin begins it. */
+bool cost_kept_load(const struct cost_place *place, struct cost_kept *kept);
 /* Reports that are not complete are not kept. */
-void cost_kept_save(const struct cost_kept *kept, const char *name);
+void cost_kept_save(const struct cost_kept *kept);
 void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report);
 /* The choice for this budget, or NULL. */
 const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, double budget_ms);
