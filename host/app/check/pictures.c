@@ -89,13 +89,12 @@ static whit_result encode(const whit_image *image, uint32_t by, const whit_rende
     whit_image_get_info(image, &info);
     whit_result result = WHIT_OK;
     for (;; ++by) {
-        whit_image *small;
+        whit_image *small = NULL;
         bool last = longer_side(&info) / (by + 1) < SIDE_MIN;
         result = shrink(image, by, params, &small);
         if (result == WHIT_OK)
             result = whit_image_encode_png(small, NULL, 0, &cli_log, &png->data, &png->size_bytes);
-        if (result == WHIT_OK)
-            whit_image_destroy(small);
+        whit_image_destroy(small);
         if (result != WHIT_OK || png->size_bytes <= bytes_max || last)
             return result;
         png_finish(png);

@@ -11,38 +11,33 @@ enum { FIGURES = 7 };
 static const char *const figure_names[FIGURES] = {"inner_nodes", "boxes", "leaves", "triangles",
                                                   "instances",   "stack", "depth"};
 
-/* Means per ray; for stack and depth, means per sample of a pixel. */
-static void find_means(const whit_cost *cost, double out[FIGURES])
+/* Means per ray, and for stack and depth per sample of a pixel; the largest in one sample of a
+   pixel. */
+static void find_figures(const whit_cost *cost, double means[FIGURES], uint64_t max[FIGURES])
 {
     double rays = cost->rays ? (double)cost->rays : 1.0;
     double records = cost->records ? (double)cost->records : 1.0;
-    out[0] = (double)cost->inner_nodes / rays;
-    out[1] = 2.0 * out[0];
-    out[2] = (double)cost->leaves / rays;
-    out[3] = (double)cost->triangles / rays;
-    out[4] = (double)cost->instances / rays;
-    out[5] = (double)cost->stack_sum / records;
-    out[6] = (double)cost->depth_sum / records;
-}
-
-/* The largest in one sample of a pixel. */
-static void find_max(const whit_cost *cost, uint64_t out[FIGURES])
-{
-    out[0] = cost->max_inner_nodes;
-    out[1] = 2 * (uint64_t)cost->max_inner_nodes;
-    out[2] = cost->max_leaves;
-    out[3] = cost->max_triangles;
-    out[4] = cost->max_instances;
-    out[5] = cost->stack;
-    out[6] = cost->depth;
+    means[0] = (double)cost->inner_nodes / rays;
+    means[1] = 2.0 * means[0];
+    means[2] = (double)cost->leaves / rays;
+    means[3] = (double)cost->triangles / rays;
+    means[4] = (double)cost->instances / rays;
+    means[5] = (double)cost->stack_sum / records;
+    means[6] = (double)cost->depth_sum / records;
+    max[0] = cost->max_inner_nodes;
+    max[1] = 2 * (uint64_t)cost->max_inner_nodes;
+    max[2] = cost->max_leaves;
+    max[3] = cost->max_triangles;
+    max[4] = cost->max_instances;
+    max[5] = cost->stack;
+    max[6] = cost->depth;
 }
 
 static void print_kind(const char *name, const whit_cost *cost)
 {
     double means[FIGURES];
     uint64_t max[FIGURES];
-    find_means(cost, means);
-    find_max(cost, max);
+    find_figures(cost, means, max);
     printf("  %-10s %10llu", name, (unsigned long long)cost->rays);
     for (int i = 0; i < FIGURES; ++i)
         printf(" %9.2f", means[i]);
@@ -68,8 +63,7 @@ static void put_kind(json_t *kind, const whit_cost *cost)
 {
     double means[FIGURES];
     uint64_t max[FIGURES];
-    find_means(cost, means);
-    find_max(cost, max);
+    find_figures(cost, means, max);
     document_count(kind, "rays", cost->rays);
     json_t *mean = document_child(kind, "mean"), *largest = document_child(kind, "max");
     for (int i = 0; i < FIGURES; ++i) {
