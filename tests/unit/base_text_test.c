@@ -131,3 +131,16 @@ TEST(messages_are_shown)
     log_error(&log, "%s: cannot be read", "a\n\x1b[2J\xff.obj");
     assert_string_equal(message, "a\\u000a\\u001b[2J\\xff.obj: cannot be read");
 }
+
+TEST(numbers_are_read_up_to_a_limit)
+{
+    uint32_t number;
+    assert_string_equal(text_number("007/4", 99, &number), "/4");
+    assert_true(number == 7);
+    assert_string_equal(text_number("4294967295", UINT32_MAX, &number), "");
+    assert_true(number == UINT32_MAX);
+    assert_null(text_number("4294967296", UINT32_MAX, &number));
+    assert_null(text_number("100", 99, &number));
+    assert_null(text_number("-1", 99, &number));
+    assert_null(text_number("", 99, &number));
+}

@@ -63,9 +63,8 @@ static void put_remark(const struct cost_report *report, const struct cost_row *
         put(cell, "%s%s%s", row->best ? "best" : "",
             row->best && row->price.verdict == 0 ? ", " : "",
             row->price.verdict == 0 ? "not distinguishable" : "");
-    size_t used = strlen(cell);
     if (row->change == SETTING_HITS && row->ids_changed && !row->note[0])
-        snprintf(cell + used, COST_CELL - used, "%s%llu ids are other", used ? ", " : "",
+        text_add(cell, COST_CELL, "%s%llu ids are other", cell[0] ? ", " : "",
                  (unsigned long long)row->ids_changed);
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "app/render/recipe.h"
+#include "base/text.h"
 
 /* ---- Recipes ---- */
 
@@ -107,13 +108,12 @@ static whit_result check_whole(struct merge *merge, uint32_t sets)
         if (here && here->tile == wanted.tile && here->set == wanted.set)
             ++at;
         else if (missing++ < SHOWN)
-            snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s",
-                     missing > 1 ? "; " : "", part_name(&wanted, name));
+            text_add(list, sizeof list, "%s%s", missing > 1 ? "; " : "", part_name(&wanted, name));
     }
     if (!missing)
         return WHIT_OK;
     if (missing > SHOWN)
-        snprintf(list + strlen(list), sizeof list - strlen(list), "; and %u more", missing - SHOWN);
+        text_add(list, sizeof list, "; and %u more", missing - SHOWN);
     return CLI_FAIL(WHIT_ERROR_INPUT, "%u of %u parts are missing: %s", missing,
                     merge->tiles * sets, list);
 }

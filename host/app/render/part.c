@@ -147,13 +147,11 @@ void part_take(const struct part *part, whit_renderer_params *params)
 
 const char *part_name(const struct part *part, char text[64])
 {
-    int used = 0;
     text[0] = '\0';
     if (part->tiles)
-        used = snprintf(text, 64, "tile %u/%u", part->tile, part->tiles);
+        text_add(text, 64, "tile %u/%u", part->tile, part->tiles);
     if (part->sets)
-        snprintf(text + used, 64 - (size_t)used, "%ssamples %u/%u", used ? ", " : "", part->set,
-                 part->sets);
+        text_add(text, 64, "%ssamples %u/%u", text[0] ? ", " : "", part->set, part->sets);
     return text;
 }
 
