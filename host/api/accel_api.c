@@ -15,26 +15,14 @@
 
 static whit_result check_params(const whit_log *log, const whit_accel_params *params)
 {
-    if ((unsigned)params->build > WHIT_BUILD_NONE) {
-        log_error(log, "there is no builder %d", (int)params->build);
-        return WHIT_ERROR_USAGE;
-    }
     if (params->instance_build != WHIT_BUILD_BINNED &&
         params->instance_build != WHIT_BUILD_MEDIAN) {
         log_error(log, "instances: binned and median are the builders there are, not %d",
                   (int)params->instance_build);
         return WHIT_ERROR_USAGE;
     }
-    if (params->bins != 0 && (params->bins < 2 || params->bins > 256)) {
-        log_error(log, "%u bins: 2 to 256 are possible", params->bins);
-        return WHIT_ERROR_USAGE;
-    }
-    if (params->leaf_limit > BVH_LEAF_MAX) {
-        log_error(log, "%u triangles in a leaf: 1 to %u are possible", params->leaf_limit,
-                  BVH_LEAF_MAX);
-        return WHIT_ERROR_USAGE;
-    }
-    return api_check_instances(log, params->instances);
+    whit_result result = bvh_check(log, params);
+    return result == WHIT_OK ? api_check_instances(log, params->instances) : result;
 }
 
 whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
@@ -155,6 +143,12 @@ whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_i
     *boxes = NULL;
     *total = 0;
     whit_result result = scene_pose_init(accel->accel->scene, time_s, &pose);
+    if (result == WHIT_OK && accel->accel->scene->channel_count > 0 &&
+        accel->accel->posed_s != time_s) {
+        log_error(&accel->log, "boxes at %g s: the trees are posed at %g s", time_s,
+                  accel->accel->posed_s);
+        result = WHIT_ERROR_USAGE;
+    }
     if (result == WHIT_OK)
         accel_boxes(accel->accel, &pose, over_instances, level, add_box, &list);
     scene_pose_finish(&pose);

@@ -35,15 +35,21 @@ static void params_resolve(const whit_accel_params *in, whit_accel_params *out)
         out->spatial_budget = 0.0f;
 }
 
-static whit_result params_check(const whit_log *log, const whit_accel_params *params)
+whit_result bvh_check(const whit_log *log, const whit_accel_params *params)
 {
     whit_result result = WHIT_ERROR_USAGE;
     if (!builder_known(params->build))
-        log_error(log, "tree: no builder has the number %d", (int)params->build);
-    else if (params->bins == 1 || params->bins > 256 || params->leaf_limit > BVH_LEAF_MAX)
-        log_error(log, "tree: bins must be 2 to 256, leaves at most %u", BVH_LEAF_MAX);
+        log_error(log, "there is no builder %d", (int)params->build);
+    else if (params->bins == 1 || params->bins > 256)
+        log_error(log, "%u bins: 2 to 256 are possible", params->bins);
+    else if (params->leaf_limit > BVH_LEAF_MAX)
+        log_error(log, "%u triangles in a leaf: 1 to %u are possible", params->leaf_limit,
+                  BVH_LEAF_MAX);
     else if (!(params->spatial_alpha >= 0.0f && params->spatial_budget <= FLT_MAX))
-        log_error(log, "tree: overlap and budget of spatial splits must be numbers from 0");
+        log_error(log,
+                  "spatial_alpha %g and spatial_budget %g: the first must not be below 0, the "
+                  "second must be finite",
+                  (double)params->spatial_alpha, (double)params->spatial_budget);
     else
         result = WHIT_OK;
     return result;
@@ -63,7 +69,7 @@ static whit_result build(const whit_log *log, const struct bvh_box *boxes, uint3
     case WHIT_BUILD_SPATIAL:
         return spatial_build(log, boxes, count, triangles, params, out);
     }
-    return WHIT_ERROR_USAGE; /* not reached: params_check has refused all others */
+    return WHIT_ERROR_USAGE; /* not reached: bvh_check has refused all others */
 }
 
 whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
@@ -74,7 +80,7 @@ whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t
     *out = (struct bvh){.primitive_count = count, .reference_count = count};
     whit_accel_params resolved;
     params_resolve(params, &resolved);
-    whit_result result = params_check(log, &resolved);
+    whit_result result = bvh_check(log, &resolved);
     if (result != WHIT_OK || count == 0)
         return result;
     if (count > BVH_FIRST_MASK / 2) {

@@ -35,6 +35,10 @@ struct bvh {
     double build_ms;
 };
 
+/* WHIT_ERROR_USAGE, logged, for params of which no builder makes a tree; those of one builder are
+   checked for all of them. */
+WHIT_CHECK whit_result bvh_check(const whit_log *log, const whit_accel_params *params);
+
 /* Boxes must be finite with lo <= hi. `triangles`: for WHIT_BUILD_SPATIAL, else NULL.
    WHIT_BUILD_NONE keeps the order of the input, in full leaves. `params` (NULL: the defaults) is
    for one tree: instances and validate are not read. Deterministic. */

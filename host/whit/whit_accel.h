@@ -24,8 +24,9 @@ typedef struct whit_accel_params {
     uint32_t bins;       /* WHIT_BUILD_BINNED: 2..256; 0: the default, chosen by measurement */
     uint32_t leaf_limit; /* triangles in a leaf, 1..15; 0: 4 */
     /* WHIT_BUILD_SPATIAL only. Alpha: space is split where siblings overlap by at least this share
-       of the root's area; 0: 1e-5. Budget: how many extra references, as a share of the triangles,
-       splits may add to the one reference per triangle; 0: 0.5; < 0: none. */
+       of the root's area, not below 0; 0: 1e-5. Budget: how many extra references, as a share of
+       the triangles, splits may add to the one reference per triangle, finite; 0: 0.5; < 0:
+       none. */
     float spatial_alpha, spatial_budget;
     uint32_t threads;          /* 0: one per core; does not change the tree */
     whit_build instance_build; /* builds the tree over instances: WHIT_BUILD_BINNED or _MEDIAN */
@@ -35,9 +36,10 @@ typedef struct whit_accel_params {
     bool validate; /* check the tree after the build (always in debug builds) */
 } whit_accel_params;
 
-/* WHIT_ERROR_USAGE for params out of range, or for a scene too large for WHIT_BUILD_NONE;
-   WHIT_ERROR_INPUT for more primitives than trees can hold; WHIT_ERROR_STATUS where `validate`
-   finds a violation. */
+/* WHIT_ERROR_USAGE for params out of range, also those of another builder, or for a scene too large
+   for WHIT_BUILD_NONE; WHIT_ERROR_INPUT for more primitives than trees can hold, for instances that
+   floats cannot hold, and with WHIT_INSTANCES_OFF for spheres that are turned, mirrored or
+   stretched; WHIT_ERROR_STATUS where `validate` finds a violation. */
 WHIT_CHECK whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *params,
                                          whit_accel **out);
 void whit_accel_destroy(whit_accel *accel);
@@ -92,8 +94,8 @@ typedef struct whit_box {
 /* The nodes at `level`, and the leaves above it, of the tree over instances (`over_instances`) or
    else of every instance's mesh tree, at `time_s`, which must be the time that the accel is posed
    at. At most `max` are given; *boxes is one block for whit_memory_destroy. *total: how many there
-   are in all. WHIT_ERROR_USAGE for a time that is not finite, WHIT_ERROR_INPUT where the scene has
-   no finite pose at that time. */
+   are in all. WHIT_ERROR_USAGE for a time that is not finite or at which the accel of an animated
+   scene is not posed, WHIT_ERROR_INPUT where the scene has no finite pose at that time. */
 WHIT_CHECK whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_instances,
                                         uint32_t level, uint64_t max, whit_box **boxes,
                                         uint64_t *total);
