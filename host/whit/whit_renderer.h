@@ -377,10 +377,11 @@ void whit_stats_add(const whit_stats *from, whit_stats *to);
 typedef struct whit_ray {
     float origin[3], t_min, dir[3], t_max;
 } whit_ray;
-/* Triangles: `u`, `v` are the barycentric weights of the second and third vertex; ng is (v1 - v0) x
-   (v2 - v0) in world space, not normalized. Spheres: u and v are the normal in object space, mapped
-   to the unit square (octahedral, +y in the middle), and ng is this normal transformed by the
-   inverse transpose. */
+/* Triangles: `u`, `v` are the barycentric weights of the second and third vertex. Spheres: u and v
+   are the normal in object space, mapped to the unit square (octahedral, +y in the middle). ng is
+   the normal of the surface in world space, of any length, on the side that it has in object space:
+   outwards from a sphere, along (v1 - v0) x (v2 - v0) from a triangle, and against that product of
+   the vertices in world space where the instance mirrors. */
 typedef struct whit_hit {
     float t; /* infinity: miss */
     float u, v;
