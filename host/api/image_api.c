@@ -66,7 +66,8 @@ whit_result whit_image_create_display(uint32_t width, uint32_t height, const uin
 
 void whit_image_display_bytes(const whit_image *image, uint8_t *rgba)
 {
-    display_bytes(&image->image, rgba);
+    if (image->image.pixels)
+        display_bytes(&image->image, rgba);
 }
 
 void whit_image_display_as(whit_image *image, const whit_renderer_params *params)

@@ -141,8 +141,12 @@ whit_result image_subtract(const whit_log *log, const struct image *a, const str
                            struct image *out)
 {
     *out = (struct image){0};
-    if (!same_kind(a, b) || !a->pixels)
+    if (!same_kind(a, b))
         return refuse(log, a, b);
+    if (!a->pixels) {
+        log_error(log, "hit identities have no difference but that they are other ones");
+        return WHIT_ERROR_USAGE;
+    }
     whit_result result = image_init_logged(log, out, a->width, a->height, 3, false);
     if (result != WHIT_OK)
         return result;

@@ -43,7 +43,8 @@ WHIT_CHECK whit_result whit_image_compare(const whit_image *a, const whit_image 
                                           const whit_compare_params *params, const whit_log *log,
                                           whit_difference *out, whit_image **flip_map);
 /* b - a, linear RGB, for whit_image_heat with is_signed, or to be saved as it is: NaN where either
-   image is not finite. WHIT_ERROR_INPUT when sizes or kinds differ. */
+   image is not finite. WHIT_ERROR_INPUT when sizes or kinds differ, WHIT_ERROR_USAGE for images of
+   hit identities. */
 WHIT_CHECK whit_result whit_image_subtract(const whit_image *a, const whit_image *b,
                                            const whit_log *log, whit_image **out);
 

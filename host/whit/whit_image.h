@@ -17,7 +17,8 @@ void whit_image_get_info(const whit_image *image, whit_image_info *info);
 const float *whit_image_floats(const whit_image *image);
 const uint32_t *whit_image_words(const whit_image *image);
 
-/* Writes the RGBA bytes (width * height * 4) that a .png of this image of floats has. */
+/* Writes the RGBA bytes (width * height * 4) that a .png of this image of floats has; nothing for
+   an image of integers. */
 void whit_image_display_bytes(const whit_image *image, uint8_t *rgba);
 
 typedef struct whit_text {
@@ -41,7 +42,8 @@ WHIT_CHECK whit_result whit_image_save_layers(const whit_image *image,
                                               const whit_image_layer *layers, uint32_t layer_count,
                                               const char *path, const whit_text *texts,
                                               uint32_t text_count, const whit_log *log);
-/* Loads a picture. `params` (may be NULL): only its fields about foreign files are used.
+/* Loads a picture. `params` (may be NULL): only its fields about foreign files are used, though all
+   are checked.
    WHIT_ERROR_INPUT for a file that is missing, damaged or no picture; WHIT_ERROR_USAGE as of
    whit_scene_load. */
 WHIT_CHECK whit_result whit_image_load(const char *path, const whit_load_params *params,

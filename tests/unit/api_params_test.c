@@ -301,3 +301,18 @@ TEST_IN(images_that_there_are_none_of_are_refused, begin, end)
     whit_image_destroy(image);
     whit_renderer_destroy(renderer);
 }
+
+TEST_IN(identities_are_not_displayed, begin, end)
+{
+    const whit_renderer_params params = small();
+    uint8_t rgba[16 * 16 * 4] = {7};
+    whit_renderer *renderer = NULL;
+    whit_image *ids = NULL;
+    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &ids), WHIT_OK);
+    whit_image_display_bytes(ids, rgba);
+    assert_int_equal(rgba[0], 7);
+    whit_image_destroy(ids);
+    whit_renderer_destroy(renderer);
+}

@@ -151,7 +151,7 @@ TEST_IN(unlike_pictures_are_refused, folder_begin, folder_end)
         assert_null(out.pixels);
     }
     assert_int_equal(image_compare(NULL, &ids, &other[1], &difference), WHIT_ERROR_INPUT);
-    assert_int_equal(image_subtract(NULL, &ids, &ids, &out), WHIT_ERROR_INPUT);
+    assert_int_equal(image_subtract(NULL, &ids, &ids, &out), WHIT_ERROR_USAGE);
     for (int i = 0; i < 3; ++i)
         image_finish(&other[i]);
     image_finish(&a);
