@@ -201,10 +201,30 @@ static bool is_key(const char *key)
     return good;
 }
 
+/* Whether OpenEXR has another use for a string of this name: it refuses it, or drops it. */
+static bool is_reserved(const char *key)
+{
+    static const char *const names[] = {"channels",   "chunkCount",         "compression",
+                                        "dataWindow", "displayWindow",      "lineOrder",
+                                        "name",       "pixelAspectRatio",   "screenWindowWidth",
+                                        "tiles",      "screenWindowCenter", "type",
+                                        "version"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
+        if (strcmp(names[i], key) == 0)
+            return true;
+    return false;
+}
+
 whit_result image_check_texts(const whit_log *log, const char *path, const whit_text *texts,
                               uint32_t count)
 {
+    bool exr = format_of_path(path) == FORMAT_EXR;
     for (uint32_t i = 0; texts && i < count; ++i) {
+        if (exr && is_reserved(texts[i].key)) {
+            log_error(log, "%s: a text `%s`: .exr has this name for something else", path,
+                      texts[i].key);
+            return WHIT_ERROR_USAGE;
+        }
         bool good = is_key(texts[i].key);
         for (uint32_t k = 0; good && k < i; ++k)
             good = strcmp(texts[k].key, texts[i].key) != 0;

@@ -26,8 +26,11 @@ typedef struct whit_text {
 } whit_text;
 /* .png (8-bit sRGB), .exr and .pfm (float); integers only .exr. Atomic. `texts` (the recipe) is
    stored in .png and .exr. Their keys differ, and have 1 to 79 printable characters, and no spaces
-   at their ends or side by side. WHIT_ERROR_USAGE for a format that cannot hold the image and for
-   other keys, WHIT_ERROR_OUTPUT where the file cannot be written. */
+   at their ends or side by side; in an .exr they are none of channels, chunkCount, compression,
+   dataWindow, displayWindow, lineOrder, name, pixelAspectRatio, screenWindowCenter,
+   screenWindowWidth, tiles, type and version, which the format needs itself. WHIT_ERROR_USAGE for a
+   format that cannot hold the image and for other keys, WHIT_ERROR_OUTPUT where the file cannot be
+   written. */
 WHIT_CHECK whit_result whit_image_save(const whit_image *image, const char *path,
                                        const whit_text *texts, uint32_t text_count,
                                        const whit_log *log);

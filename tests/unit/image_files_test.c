@@ -168,7 +168,7 @@ TEST_IN(recipe_comes_back, folder_begin, folder_end)
 TEST_IN(refusals_leave_nothing_behind, folder_begin, folder_end)
 {
     own_image floats = fixture_floats(4, 4, 3), words = fixture_words(4, 4, 2), none = {0};
-    const whit_text other = {"compression", "value"}; /* refused half-way */
+    const whit_text other = {"compression", "value"}; /* a name of EXR's own */
     const struct {
         const char *name;
         const struct image *image;
@@ -179,7 +179,7 @@ TEST_IN(refusals_leave_nothing_behind, folder_begin, folder_end)
                  {"a.png", &words, 0, WHIT_ERROR_USAGE, ".exr"},
                  {"none/a.exr", &floats, 0, WHIT_ERROR_OUTPUT, ""},
                  {"a.png", &none, 0, WHIT_ERROR_USAGE, ""},
-                 {"a.exr", &floats, 1, WHIT_ERROR_OUTPUT, ""}};
+                 {"a.exr", &floats, 1, WHIT_ERROR_USAGE, "for something else"}};
     for (int i = 0; i < 5; ++i) {
         whit_result result =
             image_save(&warnings_log, cases[i].image, NULL, 0, in_folder(cases[i].name),
@@ -222,6 +222,12 @@ TEST_IN(keys_that_a_file_would_change_are_refused, folder_begin, folder_end)
             WHIT_ERROR_USAGE);
         assert_int_equal(messages.errors, 3);
         assert_non_null(strstr(messages.last_error, "keys have 1 to 79 printable characters"));
+    }
+    static const char *const reserved[] = {"name", "tiles", "version", "chunkCount"};
+    for (int i = 0; i < 4; ++i) {
+        const whit_text text = {reserved[i], "1"};
+        assert_int_equal(image_save(&warnings_log, &image, NULL, 0, in_folder("a.exr"), &text, 1),
+                         WHIT_ERROR_USAGE);
     }
     assert_int_equal(rmdir(folder), 0);
     assert_int_equal(mkdir(folder, 0700), 0);
