@@ -190,6 +190,11 @@ whit_result whit_shader_load_stages(whit_shader_compiler *compiler, const char *
 {
     struct shader_errors *errors = &compiler->errors;
     *errors = (struct shader_errors){0};
+    *out = NULL;
+    if (!path && !stages) {
+        log_error(&compiler->log, "there is no path of a file to load");
+        return WHIT_ERROR_USAGE;
+    }
     whit_result result = load(compiler, path, stages, trust, out);
     show_errors(compiler);
     return result;

@@ -140,6 +140,10 @@ static whit_result name_input(const whit_log *log, char name[INPUT_NAME_BYTES])
 
 whit_result load_check(const whit_log *log, const char *path, const whit_load_params *params)
 {
+    if (!path) {
+        log_error(log, "there is no path of a file to load");
+        return WHIT_ERROR_USAGE;
+    }
     if (!params)
         return WHIT_OK;
     if ((uint32_t)params->up > WHIT_UP_AUTO || (uint32_t)params->lights > WHIT_LIGHTS_KEY) {
@@ -196,9 +200,9 @@ whit_result load_scene(const whit_log *log, const char *path, const whit_load_pa
                        struct scene **out)
 {
     char name[INPUT_NAME_BYTES];
-    bool piped = is_input(path);
     *out = NULL;
     whit_result result = load_check(log, path, params);
+    bool piped = result == WHIT_OK && is_input(path);
     if (result == WHIT_OK)
         result = piped ? name_input(log, name) : check_path(log, path);
     return result == WHIT_OK ? load_named(log, piped ? name : path, piped, params, out) : result;

@@ -23,7 +23,8 @@ static inline struct foreign_params load_foreign(const whit_load_params *params)
     return foreign;
 }
 
-/* WHIT_ERROR_USAGE, logged after `path`, for params out of range; they may be NULL. */
+/* WHIT_ERROR_USAGE, logged after `path`, for params out of range, which may be NULL, and for a NULL
+   path. */
 WHIT_CHECK whit_result load_check(const whit_log *log, const char *path,
                                   const whit_load_params *params);
 

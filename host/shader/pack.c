@@ -133,6 +133,7 @@ char *shader_pack_write(const struct shader_text *text, const char **why)
         return NULL;
     put_all(&written, text);
     written.out[written.used] = 0;
+    *why = NULL;
     return written.out;
 }
 

@@ -48,7 +48,8 @@ uint32_t whit_shader_compiler_errors_left(const whit_shader_compiler *compiler);
 /* Reads the file with all that it includes, or the functions that a .png or .exr carries under
    WHIT_SHADER_KEY, and compiles the kernels that its functions are part of. `trust`: leaves loops
    and indices of the file unbounded. WHIT_ERROR_INPUT, with each error logged as "FILE:line:
-   reason"; WHIT_ERROR_CANCELLED; WHIT_ERROR_USAGE where a sandbox is required and there is none. */
+   reason"; WHIT_ERROR_CANCELLED; WHIT_ERROR_USAGE for a NULL path, and where a sandbox is required
+   and there is none. */
 WHIT_CHECK whit_result whit_shader_load(whit_shader_compiler *compiler, const char *path,
                                         bool trust, whit_shader **out);
 /* As whit_shader_load, with the stages of a source checkout in place of the built-in ones: `stages`
@@ -185,9 +186,9 @@ WHIT_CHECK whit_result whit_renderer_check_expectations(whit_renderer *renderer,
 #define WHIT_SHADER_KEY "whit:shader"
 
 /* Packs all files of a shader into one text of at most 1 MiB, printable ASCII with newlines, as a
-   picture carries it; to be released by whit_memory_destroy. NULL, with the reason in *why (a
-   static string): the files are larger than that, a file's name would be refused by
-   whit_shader_unpack, or there is no memory. */
+   picture carries it; to be released by whit_memory_destroy. NULL: the files are larger than that,
+   a file's name would be refused by whit_shader_unpack, or there is no memory. *why: the reason, a
+   static string; NULL where there is none. */
 char *whit_shader_pack(const whit_shader *shader, const char **why);
 
 typedef struct whit_shader_file {

@@ -32,6 +32,8 @@ static whit_result draw(const whit_shader *shader, const char *sliders, float *p
 static void draw_good(float *pixels)
 {
     own_whit_shader *shader = NULL;
+    assert_int_equal(whit_shader_load(compiler, NULL, false, &shader), WHIT_ERROR_USAGE);
+    assert_null(shader);
     assert_int_equal(whit_shader_load(compiler, in_folder("good.glsl"), false, &shader), WHIT_OK);
     assert_int_equal(draw(shader, NULL, pixels), WHIT_OK);
 }

@@ -192,6 +192,7 @@ TEST(there_are_limits)
     file.bytes = SHADER_PACK_BYTES - 100;
     char *made = shader_pack_write(&text, &why);
     assert_non_null(made);
+    assert_null(why);
     assert_true(reads(made));
     free(made);
     char *names[SHADER_TEXT_FILES_MAX + 1];
