@@ -168,6 +168,10 @@ whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float
         log_error(&refine->log, "a picture can be refined from its first sample on, and once");
         return WHIT_ERROR_USAGE;
     }
+    if (samples > WHIT_SAMPLES_MAX) {
+        log_error(&refine->log, "%u samples to begin with: at most %d", samples, WHIT_SAMPLES_MAX);
+        return WHIT_ERROR_USAGE;
+    }
     size_t pixels = (size_t)params->width * params->height;
     whit_result result =
         image_init_logged(&refine->log, &part.color, params->width, params->height, 4, false);

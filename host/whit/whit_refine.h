@@ -11,7 +11,8 @@ extern "C" {
 /* A picture of 1, 2, 4, 8 ... samples a pixel. Each step draws as many samples as there are, so
    that no ray of the picture is traced twice; only the estimate of its error may need the camera
    rays of the first sample, and the shadow rays of what they hit, once more. After n samples it is,
-   byte for byte, the picture that a renderer draws with `n` as its number of samples. */
+   byte for byte, the picture that a renderer draws with `n` as its number of samples; but where
+   whit_refine_begin gave a number that is no power of 2, sums are rounded in another order. */
 typedef struct whit_refine whit_refine;
 
 typedef struct whit_refine_info {
@@ -38,7 +39,8 @@ void whit_refine_destroy(whit_refine *refine);
 
 /* Begins with an existing picture of samples 0 to `samples` - 1: `color` as of WHIT_AOV_COLOR and
    `cuts` as of WHIT_AOV_CUTS, in the size of the params; both are copied. Steps then double
-   `samples`, and statistics cover only the steps. WHIT_ERROR_USAGE after the first step. */
+   `samples`, and statistics cover only the steps. WHIT_ERROR_USAGE after the first step, and for
+   more than WHIT_SAMPLES_MAX samples. */
 WHIT_CHECK whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float *color,
                                          const float *cuts);
 /* From this call on `renderer` draws the steps; its pictures must have the same pixels as those of

@@ -191,6 +191,7 @@ TEST(what_is_not_there_is_refused)
     const whit_renderer_params params = params_of(8, 0.0);
     scene_open(WHIT_SCENES_DIR "/cube.json");
     struct refining o = begin(&params);
+    const float none[4][4] = {{0}};
     whit_image *image = NULL;
     assert_int_equal(whit_refine_image(o.refine, &image), WHIT_ERROR_USAGE);
     assert_null(image);
@@ -200,6 +201,8 @@ TEST(what_is_not_there_is_refused)
     whit_refine_destroy(o.refine);
     o.params.width = o.params.height = 2;
     assert_int_equal(whit_refine_create(o.renderer, &o.params, &o.refine), WHIT_OK);
+    assert_int_equal(whit_refine_begin(o.refine, WHIT_SAMPLES_MAX + 1, &none[0][0], &none[0][0]),
+                     WHIT_ERROR_USAGE);
     assert_true(refine_to(&o, WHIT_SAMPLES_MAX).last);
     assert_int_equal(whit_refine_step(o.refine), WHIT_ERROR_USAGE);
     whit_renderer *no_device = NULL;
