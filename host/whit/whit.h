@@ -2,20 +2,31 @@
    parts are in the headers that it includes. See tests/example/example.c for a program that uses
    nothing else.
 
+   Scenes come from files (whit's own in JSON, glTF, OBJ and other models, see whit_scene_load), not
+   from arrays in memory. They do not change once they are loaded; what renderers choose is the time
+   of the animation, the camera and their params.
+
    Ownership: what a function creates, its destroy function ends; destroy accepts NULL. Handles
    borrow what they were made from: scene <- accel <- renderer -> device; destroy in reverse order.
-   NULL params mean all defaults. In params structs 0 means the default, except in
-   whit_renderer_params: start that from whit_renderer_defaults(), because 0 bounces there means
-   none and a bail-out of 0 traces every ray. Params are read during the call only. On failure an
-   out parameter is NULL or untouched, the reason went to the log callback as one line (where the
-   call or a handle has one; what a `cancel` flag ended may log nothing), and the result says which
-   kind it was. Each function names the results
-   that it may give beside WHIT_OK and WHIT_ERROR_MEMORY, which any of them may.
+   NULL params mean all defaults. Other pointers, handles included, are not NULL unless their
+   comment allows it; a NULL path of a file to load is WHIT_ERROR_USAGE. In params structs 0 means
+   the default, except in whit_renderer_params: start that from whit_renderer_defaults(), because 0
+   bounces there means none and a bail-out of 0 traces every ray. Params are read during the call
+   only. On failure an out parameter is NULL or untouched, the reason went to the log callback as
+   one line (where the call or a handle has one; what a `cancel` flag ended may log nothing), and
+   the result says which kind it was. Each function names the results that it may give beside
+   WHIT_OK and WHIT_ERROR_MEMORY, which any of them may.
 
    Threads: different handles may be used from different threads; one handle from one at a time. An
    accel and all renderers and references made from it count as one handle, for its trees stand at
    one time of the animation and are moved to that of the renderer that needs them. A `cancel` flag
-   may be set from anywhere, a signal handler included. */
+   may be set from anywhere, a signal handler included. Callbacks return: an exception or longjmp
+   that leaves one leaves locks held, that of messages among them, and the next call may wait
+   forever.
+
+   fork(): in the child, the parent's devices and what was made from them can be neither used nor
+   destroyed, since threads of their drivers are missing there. It creates its own, and ends by
+   _exit(): handlers that drivers have set for exit() may wait for those threads. */
 #ifndef WHIT_H
 #define WHIT_H
 

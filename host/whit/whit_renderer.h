@@ -47,7 +47,8 @@ typedef struct whit_sampling {
     whit_sampling_kind kind;
     uint32_t count;     /* FIXED: up to WHIT_SAMPLES_MAX; powers of 4 are the most evenly spread; 0:
                            1. ADAPTIVE: 1, 4 or 16; 0: 4 */
-    uint32_t first;     /* FIXED: a multiple of `count`; hit identities exist for sample 0 only */
+    uint32_t first;     /* FIXED: a multiple of `count`; hit identities exist for sample 0 only.
+                           ADAPTIVE: 0 */
     uint32_t count_max; /* ADAPTIVE: 4, 16 or 64, above `count`; 0: 64 */
     double contrast;    /* ADAPTIVE: above 0, up to 1, of what is displayed, linear */
 } whit_sampling;
@@ -213,9 +214,10 @@ WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double ti
 /* Prepares another picture of the same scene with the same kernels. Of `params` it takes width,
    height, camera, time_s, sampling, light_samples, bailout, depth, exposure_ev, soft_highlights,
    time_stages and sliders, and nothing else; the camera's name is borrowed until the next call. The
-   picture is that of a renderer made with these params, byte for byte. After an error the renderer
-   may have no picture, and whit_renderer_render gives WHIT_ERROR_USAGE until a call succeeds.
-   WHIT_ERROR_USAGE and others as of whit_renderer_create. */
+   picture is that of a renderer made with these params, byte for byte. WHIT_ERROR_USAGE and others
+   as of whit_renderer_create. Params out of range leave the former view and picture; after other
+   errors, that of a camera that does not exist included, the renderer may have no picture, and
+   whit_renderer_render gives WHIT_ERROR_USAGE until a call succeeds. */
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
                                               const whit_renderer_params *params);
 

@@ -38,7 +38,8 @@ typedef struct whit_load_params {
     const char *environment;
     bool has_background;
     uint8_t background[3];
-    /* For each importer and decoder of pictures that is not whit's own: */
+    /* For each importer and decoder of pictures that is not whit's own; one that takes longer has
+       failed at its file, as at a damaged one: */
     double import_limit_s; /* processor time, not below 0; 0: 8, plus 4 per 10 MB, at most 60 */
     double time_limit_s;   /* wall clock, not below 0; 0: ten times import_limit_s */
     bool require_sandbox;  /* WHIT_ERROR_USAGE where importers cannot be run in a sandbox; false:
