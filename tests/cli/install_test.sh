@@ -22,6 +22,22 @@ check "find_package(whit) and the example build" quietly build_example
 check "the example renders a picture and traces rays" "$OUT/build/example" "$CUBE" "$OUT/cube.png"
 check "the picture is there" test -s "$OUT/cube.png"
 
+# The shared library needs no package of what it stands on.
+mkdir "$OUT/shared"
+cat >"$OUT/shared/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.16)
+project(shared LANGUAGES NONE)
+foreach(package Threads Vulkan assimp glslang SPIRV-Tools-opt PNG JPEG OpenEXR PkgConfig)
+  set(CMAKE_DISABLE_FIND_PACKAGE_${package} ON)
+endforeach()
+find_package(whit REQUIRED CONFIG COMPONENTS shared)
+if(NOT TARGET whit::whit_shared)
+  message(FATAL_ERROR "no target")
+endif()
+END
+check "find_package(whit COMPONENTS shared)" quietly "$CMAKE" -S "$OUT/shared" -B "$OUT/shared/build" \
+    -Dwhit_DIR="$(dirname "$(find "$OUT/prefix" -name whitConfig.cmake)")"
+
 # The shared library exports whit_* and no other name, and a program is built with it by pkg-config.
 library=$(find "$OUT/prefix" -name 'libwhit.so')
 nm -D --defined-only --extern-only "$library" | awk '{ print $3 }' >"$OUT/names"
