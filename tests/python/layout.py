@@ -18,8 +18,13 @@ def name_of(kind):
     if isinstance(kind, type(ctypes.c_uint8 * 3)):
         return NAMES[kind._type_] + " *"
     if isinstance(kind, type(whit.Result)) or kind in whit.STRUCTS:
-        return kind.__name__
+        return c_name(kind)
     return NAMES.get(kind)
+
+
+def c_name(kind):
+    """whit_scene_info of SceneInfo."""
+    return "whit" + re.sub("([A-Z])", r"_\1", kind.__name__).lower()
 
 
 def names_in(kind, text):
@@ -38,19 +43,19 @@ enumerations = [kind for kind in vars(whit).values() if isinstance(kind, type(wh
 assert len(enumerations) >= 14 and len(whit.STRUCTS) >= 13 and whit.PROTOTYPES.count(";") >= 23
 headers = re.sub(r"/\*.*?\*/", "", "".join(open(path, encoding="utf-8").read() for path in sys.argv[1:]), flags=re.S)
 for kind in enumerations:
-    own = [f"{whit.PREFIXES.get(kind, kind.__name__.upper())}_{word}" for word in kind.__members__]
-    assert set(names_in(kind.__name__, headers)) - set(own) <= {"WHIT_AOV_SHADER"}, (kind, own)
+    own = [f"{whit.PREFIXES.get(kind, c_name(kind).upper())}_{word}" for word in kind.__members__]
+    assert set(names_in(c_name(kind), headers)) - set(own) <= {"WHIT_AOV_SHADER"}, (kind, own)
 for struct in whit.STRUCTS:
-    assert names_in(struct.__name__, headers) == list(struct.kinds), (struct, names_in(struct.__name__, headers))
+    assert names_in(c_name(struct), headers) == list(struct.kinds), (struct, names_in(c_name(struct), headers))
 for kind in enumerations:
     for word, value in kind.__members__.items():
-        enumerator = f"{whit.PREFIXES.get(kind, kind.__name__.upper())}_{word}"
+        enumerator = f"{whit.PREFIXES.get(kind, c_name(kind).upper())}_{word}"
         hold(f"{enumerator} == {int(value)}", f"{enumerator} is {int(value)} in whit.py")
-    enumerator = f"sizeof({kind.__name__}) == {ctypes.sizeof(ctypes.c_uint)}"
+    enumerator = f"sizeof({c_name(kind)}) == {ctypes.sizeof(ctypes.c_uint)}"
     hold(enumerator, enumerator)
 hold(f"WHIT_NONE == {whit.NONE}u", "NONE")
 for struct in whit.STRUCTS:
-    of = struct.__name__
+    of = c_name(struct)
     hold(f"sizeof({of}) == {ctypes.sizeof(struct)}", f"{of}: its size")
     for member, kind in struct.kinds.items():
         field, value = getattr(struct, member), f"(({of} *)0)->{member}"

@@ -1,12 +1,16 @@
 """whit.py over the library that was built: pictures and rays against the program's, and what goes wrong."""
 
 import _thread
+import copy
 import gc
 import logging
 import os
+import pickle
 import struct
 import subprocess
+import sys
 import threading
+import weakref
 
 import pytest
 import whit
@@ -94,6 +98,8 @@ def test_rays(renderer):
     assert bytes(twin.trace(rays)) == bytes(hits) == bytes(twin.trace(rays, on="cpu-brute"))
     assert not renderer.trace(rays, any_hit=True)[0].missed
     assert bytes(renderer.trace(memoryview(flat).cast("f", (3, 1, 8)))) == bytes(hits)
+    assert bytes(renderer.trace((whit.Ray * 3).from_buffer_copy(flat))) == bytes(hits)
+    assert len(renderer.trace((whit.Ray * 0)())) == len(renderer.trace([])) == 0
     for wrong in (b"123", memoryview(bytes(96)).cast("f", (4, 2, 3)), memoryview(bytes(96)).cast("f", (4, 6))):
         with pytest.raises(ValueError, match="8 floats"):
             renderer.trace(wrong)
@@ -117,6 +123,10 @@ def test_numpy(renderer):
     rays = numpy.array([[0, 9, 0, 0, 0, -1, 0, numpy.inf]] * 3, numpy.float32)
     hits = numpy.asarray(renderer.trace(rays))
     assert hits["t"].shape == (3,) and (hits["instance"] == hits["instance"][0]).all()
+    record = [("origin", "f4", 3), ("t_min", "f4"), ("dir", "f4", 3), ("t_max", "f4")]
+    assert (numpy.asarray(renderer.trace(rays.view(record)[:, 0])) == hits).all()
+    with pytest.raises(ValueError, match="8 floats"):
+        renderer.trace(rays.view([("numbers", "i4", 8)]))
     assert renderer.render_views(numpy.arange(1)).tobytes() == color.tobytes()
     with pytest.raises(ValueError, match="of the format 'f'"):
         renderer.render(out=color.astype(numpy.float64))
@@ -204,3 +214,67 @@ def test_what_is_borrowed_goes_last(monkeypatch):
     gc.collect()
     assert sorted(gone) == ["accel", "device", "renderer", "scene"] and gone[0] == "renderer"
     assert gone.index("accel") < gone.index("scene")
+
+
+def test_what_the_callback_refers_to_is_freed(renderer):
+    def draw():
+        drawn = whit.Renderer(renderer.scene, progress=lambda done: drawn, **SMALL)
+        drawn.render()
+        return weakref.ref(drawn)
+
+    gone = draw()
+    gc.collect()
+    assert gone() is None
+
+
+ENDS = """
+import os, sys, threading, time, whit
+begun = threading.Event()
+scene = whit.Scene(sys.argv[1])
+drawn = whit.Renderer(scene, width=40, height=30, samples=4096, tile_size=16, progress=lambda done: begun.set())
+if sys.argv[2] == "daemon":
+    threading.Thread(target=drawn.render, daemon=True).start()
+    begun.wait()
+elif os.fork():
+    sys.exit(os.waitstatus_to_exitcode(os.wait()[1]))
+"""
+
+
+@pytest.mark.parametrize("how", ["daemon", "fork"])
+def test_the_interpreter_ends(how):
+    ended = subprocess.run([sys.executable, "-c", ENDS, CUBE, how], stderr=subprocess.PIPE, check=True, timeout=30)
+    assert ended.stderr == b""
+
+
+def test_closing(renderer):
+    with whit.Scene(CUBE) as scene, whit.Device() as device:
+        drawn = whit.Renderer(scene, device, **SMALL)
+    assert drawn.render().shape == (30, 40, 4)
+    drawn.close()
+    for call in (drawn.render, lambda: whit.Renderer(scene, whit.CPU), lambda: whit.Renderer(renderer.scene, device)):
+        with pytest.raises(ValueError, match="it is closed"):
+            call()
+
+
+def test_errors_and_enumerators_are_copied():
+    error = pickle.loads(pickle.dumps(whit.Error(whit.Result.ERROR_INPUT, ["one", "two"])))
+    assert (error.result, str(error)) == (whit.Result.ERROR_INPUT, "one\ntwo")
+    assert str(copy.copy(whit.Error(3, []))) == "bad input"
+    assert pickle.loads(pickle.dumps(whit.Numerics.EXACT)) is whit.Numerics.EXACT
+
+
+def test_no_parameter_is_ignored(renderer):
+    assert isinstance(renderer.device.info.name, str) and renderer.device.info.kind in whit.DeviceKind
+    whit.Scene(CUBE, environment=None, background=None)
+    whit.Renderer(renderer.scene, whit.CPU, sliders=None, sampling=None, samples=4)
+    for parameters, wrong in (({"numerics": 2**32 + 2}, "numerics: 4294967298 is out of range"),
+                              ({"portable": "no"}, "portable: 'no' is neither True nor False"),
+                              ({"camera": (1, 2, 3)}, r"camera: \(1, 2, 3\) is not \(eye, target"),
+                              ({"samples": 4, "sampling": {"contrast": 0.5}}, "samples and sampling: one of them")):
+        with pytest.raises((ValueError, TypeError), match=wrong):
+            whit.Renderer(renderer.scene, whit.CPU, **parameters)
+    with pytest.raises(TypeError, match="scene: None is no whit.Scene"):
+        whit.Renderer(None)
+    for name in ("has_background", "allowed_count"):
+        with pytest.raises(TypeError, match=f"no parameter '{name}'"):
+            whit.Scene(CUBE, **{name: 1})

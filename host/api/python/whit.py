@@ -11,12 +11,14 @@
 
 numpy.asarray() makes arrays of all of these without a copy, and `out=` takes an array of one's own. What goes wrong
 is an Error with whit's own message; warnings go to logging.getLogger("whit"). An object is used by one thread at a
-time; it lives as long as what was made from it. Names of parameters, units and defaults are those of whit.h, and words
+time; it lives as long as what was made from it, and close() or `with` lets go of it. A child of os.fork() makes objects
+of its own, and ends by os._exit(), as those of multiprocessing do. Names of parameters, units and defaults are those of whit.h, and words
 of enumerations are the last ones of its names: numerics="exact" is WHIT_NUMERICS_EXACT.
 
 The library is $WHIT_LIBRARY, or the libwhit.so of the prefix that this file is installed in, or else the system's.
 """
 
+import atexit
 import ctypes
 import glob
 import logging
@@ -24,6 +26,7 @@ import os
 import re
 import sys
 import threading
+import types
 import weakref
 from ctypes import c_bool, c_char, c_char_p, c_double, c_float, c_uint, c_uint8, c_uint32, c_uint64, c_void_p
 from enum import IntEnum
@@ -36,28 +39,29 @@ CPU = object()  # in the place of a device: rays alone, traced by the device's t
 # ---- What whit.h declares (a test holds all of it against that header) ----
 
 
+# Enumeration and struct SceneInfo stand for whit_scene_info.
 def _enumeration(name, words):
     return IntEnum(name, words.split(), start=0)
 
 
-Result = _enumeration("whit_result", "OK ERROR_FAILED ERROR_USAGE ERROR_INPUT ERROR_OUTPUT ERROR_NO_DEVICE"
+Result = _enumeration("Result", "OK ERROR_FAILED ERROR_USAGE ERROR_INPUT ERROR_OUTPUT ERROR_NO_DEVICE"
                       " ERROR_DEVICE ERROR_MEMORY ERROR_STATUS ERROR_TIME_LIMIT ERROR_CANCELLED")
-LogLevel = _enumeration("whit_log_level", "ERROR WARNING INFO DEBUG")
-Up = _enumeration("whit_up", "Y X Z MINUS_X MINUS_Y MINUS_Z AUTO")
-Lights = _enumeration("whit_lights", "AUTO FILE NONE KEY")
-EnvironmentKind = _enumeration("whit_environment_kind", "GRADIENT MAP")
-DeviceKind = _enumeration("whit_device_kind", "DISCRETE INTEGRATED VIRTUAL CPU OTHER")
-CameraKind = _enumeration("whit_camera_kind", "PERSPECTIVE ORTHOGRAPHIC PANORAMA")
-Traversal = _enumeration("whit_traversal", "DISTANCE SIGN BASIC")
-Numerics = _enumeration("whit_numerics", "WATERTIGHT FAST EXACT")
-Shadows = _enumeration("whit_shadows", "TINTED OPAQUE NONE")
-SamplingKind = _enumeration("whit_sampling_kind", "FIXED ADAPTIVE")
-Minification = _enumeration("whit_minification", "MIPMAP NONE")
-LoadPath = _enumeration("whit_load_path", "AUTO STORAGE TEXEL")
-Packets = _enumeration("whit_packets", "AUTO ON OFF")
-Classes = _enumeration("whit_classes", "AUTO ONE MANY")
-TraceOn = _enumeration("whit_trace_on", "DEVICE CPU_FLOAT CPU_BRUTE")
-Aov = _enumeration("whit_aov", "COLOR IDS CUTS DISTANCES")
+LogLevel = _enumeration("LogLevel", "ERROR WARNING INFO DEBUG")
+Up = _enumeration("Up", "Y X Z MINUS_X MINUS_Y MINUS_Z AUTO")
+Lights = _enumeration("Lights", "AUTO FILE NONE KEY")
+EnvironmentKind = _enumeration("EnvironmentKind", "GRADIENT MAP")
+DeviceKind = _enumeration("DeviceKind", "DISCRETE INTEGRATED VIRTUAL CPU OTHER")
+CameraKind = _enumeration("CameraKind", "PERSPECTIVE ORTHOGRAPHIC PANORAMA")
+Traversal = _enumeration("Traversal", "DISTANCE SIGN BASIC")
+Numerics = _enumeration("Numerics", "WATERTIGHT FAST EXACT")
+Shadows = _enumeration("Shadows", "TINTED OPAQUE NONE")
+SamplingKind = _enumeration("SamplingKind", "FIXED ADAPTIVE")
+Minification = _enumeration("Minification", "MIPMAP NONE")
+LoadPath = _enumeration("LoadPath", "AUTO STORAGE TEXEL")
+Packets = _enumeration("Packets", "AUTO ON OFF")
+Classes = _enumeration("Classes", "AUTO ONE MANY")
+TraceOn = _enumeration("TraceOn", "DEVICE CPU_FLOAT CPU_BRUTE")
+Aov = _enumeration("Aov", "COLOR IDS CUTS DISTANCES")
 # What their enumerators begin with, where that is not the type's name.
 PREFIXES = {Result: "WHIT", LogLevel: "WHIT_LOG", EnvironmentKind: "WHIT_ENVIRONMENT", DeviceKind: "WHIT_DEVICE",
             CameraKind: "WHIT_CAMERA", SamplingKind: "WHIT_SAMPLING", LoadPath: "WHIT_LOAD", TraceOn: "WHIT_TRACE"}
@@ -73,34 +77,34 @@ def _struct(name, *members):
     return type(name, (ctypes.Structure,), {"_fields_": plain, "kinds": dict(fields)})
 
 
-Log = _struct("whit_log", ("fn", _LogFn), ("user", c_void_p), ("level", LogLevel))
-Camera = _struct("whit_camera", ("name", c_char_p), ("own", c_bool), ("kind", CameraKind),
+Log = _struct("Log", ("fn", _LogFn), ("user", c_void_p), ("level", LogLevel))
+Camera = _struct("Camera", ("name", c_char_p), ("own", c_bool), ("kind", CameraKind),
                  ("eye target up", c_double * 3), ("fov_y_degrees height lens_radius focus_distance", c_double))
-Sampling = _struct("whit_sampling", ("kind", SamplingKind), ("count first count_max", c_uint32), ("contrast", c_double))
+Sampling = _struct("Sampling", ("kind", SamplingKind), ("count first count_max", c_uint32), ("contrast", c_double))
 LoadParams = _struct(
-    "whit_load_params", ("up", Up), ("lights", Lights), ("environment", c_char_p), ("has_background", c_bool),
+    "LoadParams", ("up", Up), ("lights", Lights), ("environment", c_char_p), ("has_background", c_bool),
     ("background", c_uint8 * 3), ("import_limit_s time_limit_s", c_double), ("require_sandbox", c_bool),
     ("memory_limit_bytes", c_uint64), ("texture_limit", c_uint32), ("cancel", c_void_p),
     ("allowed_folders", ctypes.POINTER(c_char_p)), ("allowed_count", c_uint32), ("refused", c_void_p))
 SceneInfo = _struct(
-    "whit_scene_info",
+    "SceneInfo",
     ("mesh_count instance_count node_count material_count texture_count light_count camera_count note_count"
      " effect_count textures_missing", c_uint32),
     ("mesh_triangle_count triangle_count sphere_count file_bytes hash", c_uint64), ("channel_count", c_uint32),
     ("time_end_s", c_double), ("one_tree", c_bool), ("lo hi objects_lo objects_hi", c_double * 3),
     ("environment", EnvironmentKind), ("environment_made_by_whit", c_bool), ("exposure_ev", c_double))
-InstanceInfo = _struct("whit_instance_info", ("name", c_char_p), ("mesh", c_uint32),
+InstanceInfo = _struct("InstanceInfo", ("name", c_char_p), ("mesh", c_uint32),
                        ("object_to_world", c_double * 12))
-CameraInfo = _struct("whit_camera_info", ("name", c_char_p), ("kind", CameraKind), ("eye target up", c_double * 3),
+CameraInfo = _struct("CameraInfo", ("name", c_char_p), ("kind", CameraKind), ("eye target up", c_double * 3),
                      ("fov_y_degrees height lens_radius focus_distance", c_double),
                      ("target_is_direction made_by_whit", c_bool))
-DeviceParams = _struct("whit_device_params", ("selector", c_char_p), ("validation", c_bool))
+DeviceParams = _struct("DeviceParams", ("selector", c_char_p), ("validation", c_bool))
 DeviceInfo = _struct(
-    "whit_device_info", ("index", c_uint32), ("name driver", c_char * 256), ("api_version", c_char * 32),
+    "DeviceInfo", ("index", c_uint32), ("name driver", c_char * 256), ("api_version", c_char * 32),
     ("kind", DeviceKind), ("memory_bytes max_storage_range_bytes", c_uint64), ("subgroup_size", c_uint32),
     ("float64 int64 timestamps usable automatic", c_bool), ("why_not", c_char * 128))
 RendererParams = _struct(
-    "whit_renderer_params", ("width height first_row row_count", c_uint32), ("camera", Camera),
+    "RendererParams", ("width height first_row row_count", c_uint32), ("camera", Camera),
     ("time_s", c_double), ("sampling", Sampling), ("depth", c_uint32), ("bailout", c_double), ("shadows", Shadows),
     ("light_samples", c_uint32), ("schlick", c_bool), ("minification", Minification), ("portable", c_bool),
     ("exposure_ev", c_double),
@@ -111,9 +115,9 @@ RendererParams = _struct(
     ("step", c_void_p), ("time_limit_s", c_double), ("load_path", LoadPath), ("traversal", Traversal),
     ("numerics", Numerics), ("packets", Packets), ("classes", Classes), ("segments", c_uint32), ("count", c_bool),
     ("shader", c_void_p), ("sliders", c_char_p), ("skip_sliders", c_bool), ("trace_rays", c_uint32))
-ImageInfo = _struct("whit_image_info", ("width height channels", c_uint32), ("integers", c_bool))
-Ray = _struct("whit_ray", ("origin", c_float * 3), ("t_min", c_float), ("dir", c_float * 3), ("t_max", c_float))
-Hit = _struct("whit_hit", ("t u v", c_float), ("primitive instance", c_uint32), ("ng", c_float * 3))
+ImageInfo = _struct("ImageInfo", ("width height channels", c_uint32), ("integers", c_bool))
+Ray = _struct("Ray", ("origin", c_float * 3), ("t_min", c_float), ("dir", c_float * 3), ("t_max", c_float))
+Hit = _struct("Hit", ("t u v", c_float), ("primitive instance", c_uint32), ("ng", c_float * 3))
 Hit.missed = property(lambda hit: hit.primitive == NONE)
 STRUCTS = [Log, Camera, Sampling, LoadParams, SceneInfo, InstanceInfo, CameraInfo, DeviceParams, DeviceInfo,
            RendererParams, ImageInfo, Ray, Hit]
@@ -198,6 +202,9 @@ class Error(Exception):
         self.result = Result(result)
         super().__init__("\n".join(lines) or _library.whit_result_name(result).decode())
 
+    def __reduce__(self):
+        return Error, (self.result, str(self).splitlines())
+
 
 class _Hearing:
     """Where a handle's messages go: errors are kept for the exception, others are logged."""
@@ -227,16 +234,89 @@ class _Handle(c_void_p):
     """What a function of libwhit made, and another ends."""
 
 
-def _release(destroy, address, _kept):
-    destroy(address)
+_living = {}  # finalizers of handles by address, in the order in which they were made
 
 
-def _make(create, destroy, *arguments, hearings, keep):
-    """The handle that `create` gives. Once nothing uses it `destroy` ends it, and what it borrows is kept until then."""
+def _release(destroy, address, process, _kept):
+    del _living[address]
+    if process == os.getpid():  # a child of fork() has handles of its parent, but not the threads behind them
+        destroy(address)
+
+
+def _make(create, destroy, *arguments, hearings, keep, cancel=None):
+    """The handle that `create` gives, which `cancel` stops. Once nothing uses it `destroy` ends it, and what it borrows
+    is kept until then."""
     handle = _Handle()
-    _check(create(*arguments, ctypes.byref(handle)), *hearings)
-    weakref.finalize(handle, _release, destroy, handle.value, keep)
+    with _Calling(cancel):
+        _check(create(*arguments, ctypes.byref(handle)), *hearings)
+        release = weakref.finalize(handle, _release, destroy, handle.value, os.getpid(), keep)
+        release.atexit = False
+        _living[handle.value] = release
     return handle
+
+
+class _Calling:
+    """A call that uses handles. Before these are destroyed at the interpreter's end, calls in daemon threads are
+    cancelled, which ends the threads, and none begins any more."""
+
+    idle = threading.Condition()
+    running = set()
+    ending = False
+
+    def __init__(self, cancel=None):
+        self._cancel = cancel
+
+    def __enter__(self):
+        with self.idle:
+            if self.ending:
+                raise Error(Result.ERROR_CANCELLED, ["the interpreter ends"])
+            self.running.add(self)
+
+    def __exit__(self, *_):
+        with self.idle:
+            self.running.discard(self)
+            self.idle.notify_all()
+        if self.ending:
+            raise SystemExit
+
+    @classmethod
+    def end(cls):
+        with cls.idle:
+            cls.ending = True
+            for call in cls.running:
+                if call._cancel is not None:
+                    call._cancel.value = True
+            if not cls.idle.wait_for(lambda: not cls.running, timeout=10.0):
+                return
+        for release in reversed(list(_living.values())):
+            release()
+
+    @classmethod
+    def forked(cls):
+        cls.idle, cls.running = threading.Condition(), set()
+
+
+atexit.register(_Calling.end)
+os.register_at_fork(after_in_child=_Calling.forked)
+
+
+class _Closing:
+    """What has a handle: close(), or the end of a `with` block, lets go of it. What was made from it can still be
+    used."""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        self.handle = None
+
+    def _opened(self):
+        if self.handle is None:
+            raise ValueError(f"{type(self).__name__}: it is closed")
+        return self.handle
 
 
 # ---- Parameters ----
@@ -262,22 +342,27 @@ def _number(name, kind, value):
         if value.lower().replace("_", "-") not in words:
             raise ValueError(f"{name}: {value!r} is none of {', '.join(words)}")
         return words.index(value.lower().replace("_", "-"))
-    if kind in (c_uint8, c_uint32, c_uint64):
-        if not 0 <= value < 1 << 8 * ctypes.sizeof(kind):
-            raise ValueError(f"{name}: {value} is out of range")
+    whole = c_uint if isinstance(kind, type(Result)) else kind
+    if whole in (c_uint, c_uint8, c_uint32, c_uint64) and not 0 <= value < 1 << 8 * ctypes.sizeof(whole):
+        raise ValueError(f"{name}: {value} is out of range")
+    if kind is c_bool and value not in (False, True):
+        raise ValueError(f"{name}: {value!r} is neither True nor False")
     return value
 
 
-_INNER = (None, c_void_p, _ProgressFn, ctypes.POINTER(c_char_p))  # kinds of members that only this file sets
+# Kinds and names of members that only this file sets.
+_INNER = (None, c_void_p, _ProgressFn, ctypes.POINTER(c_char_p), "has_background", "allowed_count")
 
 
 def _fill(params, values):
-    """Sets members of `params` by name."""
+    """Sets members of `params` by name; None leaves a default."""
     for name, value in values.items():
         kind = params.kinds.get(name)
-        if kind in _INNER:
-            names = sorted(one for one, its in params.kinds.items() if its not in _INNER)
+        if kind in _INNER or name in _INNER:
+            names = sorted(one for one, its in params.kinds.items() if its not in _INNER and one not in _INNER)
             raise TypeError(f"there is no parameter {name!r}; there are {', '.join(names)}")
+        if value is None:
+            continue
         if kind is c_char_p:
             value = _text(name, value)
         elif isinstance(kind, type(ctypes.Structure)):
@@ -293,23 +378,41 @@ def _fill(params, values):
 # ---- Scenes and devices ----
 
 
-class Scene:
+def _told(info):
+    """What a struct says: texts are str, arrays tuples, enumerators those of their class."""
+    told = types.SimpleNamespace()
+    for name, kind in info.kinds.items():
+        value = getattr(info, name)
+        if isinstance(value, bytes):
+            value = os.fsdecode(value)
+        elif isinstance(kind, type(Result)):
+            value = kind(value)
+        elif isinstance(value, ctypes.Array):
+            value = tuple(value)
+        setattr(told, name, value)
+    return told
+
+
+class Scene(_Closing):
     """A file of a scene or a model. Parameters are those of whit_load_params, of which `background` is a colour of
     three bytes; `allow`: a further folder that may be read, or several. `info` has the members of whit_scene_info."""
 
     def __init__(self, path, *, allow=(), **params):
         load = LoadParams()
         _fill(load, params)
-        load.has_background = "background" in params
+        load.has_background = params.get("background") is not None
         allow = [allow] if isinstance(allow, (str, bytes, os.PathLike)) else allow
         load.allowed_folders = (c_char_p * len(allow))(*(_text("allow", folder) for folder in allow))
         load.allowed_count = len(allow)
+        cancel = c_bool(False)
+        load.cancel = ctypes.addressof(cancel)
         self._hearing = _Hearing()
         self.handle = _make(_library.whit_scene_load, _library.whit_scene_destroy, _text("path", path),
                             ctypes.byref(load), ctypes.byref(self._hearing.log), hearings=[self._hearing],
-                            keep=self._hearing)
-        self.info = SceneInfo()
-        _library.whit_scene_get_info(self.handle, ctypes.byref(self.info))
+                            keep=self._hearing, cancel=cancel)
+        info = SceneInfo()
+        _library.whit_scene_get_info(self.handle, ctypes.byref(info))
+        self.info = _told(info)
         self.instances = self._names(InstanceInfo, _library.whit_scene_get_instance, self.info.instance_count)
         self.cameras = self._names(CameraInfo, _library.whit_scene_get_camera, self.info.camera_count)
 
@@ -321,7 +424,7 @@ class Scene:
         return names
 
 
-class Device:
+class Device(_Closing):
     """A Vulkan device: by number, or part of a name; None: the one that whit takes by itself. `info` has the members
     of whit_device_info."""
 
@@ -330,8 +433,9 @@ class Device:
         self._hearing = _Hearing()
         self.handle = _make(_library.whit_device_create, _library.whit_device_destroy, ctypes.byref(params),
                             ctypes.byref(self._hearing.log), hearings=[self._hearing], keep=self._hearing)
-        self.info = DeviceInfo()
-        _library.whit_device_get_info(self.handle, ctypes.byref(self.info))
+        info = DeviceInfo()
+        _library.whit_device_get_info(self.handle, ctypes.byref(info))
+        self.info = _told(info)
 
 
 # ---- Pictures and rays ----
@@ -358,10 +462,12 @@ def _rays_of(rays):
         rays = [(origin, *(span or (0.0, float("inf"))), direction) for origin, direction, *span in rays]
         return (Ray * len(rays))(*(Ray(_of_length("origin", 3, o), low, _of_length("dir", 3, d), high)
                                    for o, low, high, d in rays))
-    if not view.c_contiguous or view.nbytes % ctypes.sizeof(Ray) or view.format.lstrip("<=@") not in ("f", "B") or \
-            view.ndim > 1 and view.shape[-1] * view.itemsize != ctypes.sizeof(Ray):
+    bytes_each = ctypes.sizeof(Ray)
+    whole = view.itemsize == bytes_each or view.ndim <= 1 or view.shape[-1] * view.itemsize == bytes_each
+    letters = set(re.sub(r":[^:]*:|[T{}()<=@0-9,]", "", view.format))  # of a struct too: "T{(3)<f:origin:<f:t_min:...}"
+    if not view.c_contiguous or view.nbytes % bytes_each or not whole or letters not in ({"f"}, {"B"}):
         raise ValueError("rays: 8 floats of 32 bits each are needed: origin, t_min, direction, t_max")
-    return (Ray * (view.nbytes // ctypes.sizeof(Ray))).from_buffer_copy(view.cast("B") if view.nbytes else b"")
+    return (Ray * (view.nbytes // bytes_each)).from_buffer_copy(view if view.nbytes else b"")
 
 
 class _Progress:
@@ -371,14 +477,15 @@ class _Progress:
     def __init__(self, tell):
         self.cancel = c_bool(False)
         self.raised = None
-        self.fn = _ProgressFn(self._go_on)
         self._tell = tell
+        this = weakref.ref(self)  # the renderer's handle keeps `fn`, while `tell` may refer to the renderer
+        self.fn = _ProgressFn(lambda _user, done: this()._go_on(done))
 
     def _stop(self, raised):
         self.raised = raised
         self.cancel.value = True
 
-    def _go_on(self, _user, done):
+    def _go_on(self, done):
         try:
             if self._tell:
                 self._tell(done)
@@ -388,8 +495,6 @@ class _Progress:
     def run(self, function, *arguments):
         """What `function` gives. Python may raise Ctrl+C as a function that C calls begins, before its `try`; then it
         goes to sys.unraisablehook. It does so in the main thread alone, and no other thread changes the hook here."""
-        self.raised = None
-        self.cancel.value = False
         main = threading.main_thread()
         if threading.current_thread() is not main:
             return function(*arguments)
@@ -416,39 +521,49 @@ def _camera_of(camera):
         return {}
     if isinstance(camera, (str, Integral)):
         return {"name": str(camera)}
-    return {"own": True, **dict(zip(("eye", "target", "up", "fov_y_degrees"), camera, strict=True))}
+    members = ("eye", "target", "up", "fov_y_degrees")
+    if len(camera) != len(members):
+        raise ValueError(f"camera: {camera!r} is not (eye, target, up, vertical degrees)")
+    return {"own": True, **dict(zip(members, camera))}
 
 
-class Renderer:
+class Renderer(_Closing):
     """Pictures of a scene. `device`: a Device, a selector of one, None, or CPU. `camera`: the name or number of one of
     the scene's, (eye, target, up, vertical degrees), or a dict of members of whit_camera, whose `own` is true where it
     has more than a name. `samples` of a pixel. `progress`: called with the share done, 0 to 1. Further parameters are
     those of whit_renderer_params."""
 
     def __init__(self, scene, device=None, *, camera=None, samples=None, progress=None, **params):
+        if not isinstance(scene, Scene):
+            raise TypeError(f"scene: {scene!r} is no whit.Scene")
+        if samples is not None and params.get("sampling") is not None:
+            raise TypeError("samples and sampling: one of them")
         self.scene = scene
         self.device = device if isinstance(device, Device) or device is CPU else Device(device)
         self._hearings = [scene._hearing] + ([] if self.device is CPU else [self.device._hearing])
         self._progress = _Progress(progress)
         self._params = _library.whit_renderer_defaults()
-        sampling = {} if samples is None else {"count": samples}
-        _fill(self._params, {"sampling": sampling, **params, "camera": _camera_of(camera)})
+        _fill(self._params, {**params, "camera": _camera_of(camera)})
+        _fill(self._params.sampling, {"count": samples})
         self._views = ()
         self._params.progress = self._progress.fn
         self._params.cancel = ctypes.addressof(self._progress.cancel)
-        on = None if self.device is CPU else self.device.handle
-        accel = _make(_library.whit_accel_create, _library.whit_accel_destroy, scene.handle, None,
-                      hearings=self._hearings, keep=scene.handle)
+        on, within = None if self.device is CPU else self.device._opened(), scene._opened()
+        accel = _make(_library.whit_accel_create, _library.whit_accel_destroy, within, None,
+                      hearings=self._hearings, keep=within)
         self.handle = _make(_library.whit_renderer_create, _library.whit_renderer_destroy, on, accel,
                             ctypes.byref(self._params), hearings=self._hearings,
-                            keep=(accel, on, self._params, self._progress))
+                            keep=(accel, on, self._params, self._progress.cancel), cancel=self._progress.cancel)
 
     def _call(self, function, *arguments):
-        result = self._progress.run(function, self.handle, *arguments)
-        if self._progress.raised is not None:
+        progress = self._progress
+        progress.raised, progress.cancel.value = None, False
+        with _Calling(progress.cancel):
+            result = progress.run(function, self._opened(), *arguments)
+        if progress.raised is not None:
             for hearing in self._hearings:
                 hearing.errors.clear()
-            raise self._progress.raised
+            raise progress.raised
         _check(result, *self._hearings)
 
     def _with_image(self, aov, use):
