@@ -284,10 +284,13 @@ whit_result whit_cameras_load(const char *path, const whit_log *log, whit_camera
                               uint32_t *count)
 {
     whit_log own = log_or_silence(log);
-    struct scene *scene = scene_create(&own, path);
     *cameras = NULL;
     *count = 0;
-    whit_result result = scene ? load_cameras(scene, path) : WHIT_ERROR_MEMORY;
+    whit_result result = load_check(log, path, NULL);
+    if (result != WHIT_OK)
+        return result;
+    struct scene *scene = scene_create(&own, path);
+    result = scene ? load_cameras(scene, path) : WHIT_ERROR_MEMORY;
     if (result == WHIT_OK)
         *cameras = array_alloc(scene->camera_count, sizeof **cameras);
     if (result == WHIT_OK && !*cameras)

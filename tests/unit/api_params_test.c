@@ -152,13 +152,15 @@ TEST(files_need_a_path)
     whit_scene *loaded = NULL;
     whit_image *image = NULL;
     whit_text *texts = NULL;
+    whit_camera *cameras = NULL;
     uint32_t count;
     messages = (struct messages){0};
+    assert_int_equal(whit_cameras_load(NULL, &warnings_log, &cameras, &count), WHIT_ERROR_USAGE);
     assert_int_equal(whit_scene_load(NULL, NULL, &warnings_log, &loaded), WHIT_ERROR_USAGE);
     assert_int_equal(whit_image_load(NULL, NULL, &warnings_log, &image), WHIT_ERROR_USAGE);
     assert_int_equal(whit_image_load_texts(NULL, NULL, &warnings_log, &texts, &count),
                      WHIT_ERROR_USAGE);
-    assert_int_equal(messages.errors, 3);
+    assert_int_equal(messages.errors, 4);
     assert_string_equal(messages.last_error, "there is no path of a file to load");
 }
 
