@@ -44,16 +44,19 @@ whit_result bench_find(const struct bench *bench, const char *name, char path[BE
     static const char *const beside[] = {"../scenes", "../../scenes", "../share/whit/scenes"};
     const char *scenes = bench->ask.scenes ? bench->ask.scenes : "scenes";
     const char *slash = strrchr(bench->whit, '/');
+    bool is_file = strpbrk(name, "/.") != NULL;
     char file[BENCH_PATH];
     snprintf(file, sizeof file, "%s/%s.json", scenes, name);
-    char *whole = realpath(file, NULL);
-    for (size_t i = 0; !whole && slash && !bench->ask.scenes && i < 3; ++i) {
+    char *whole = realpath(is_file ? name : file, NULL);
+    for (size_t i = 0; !whole && !is_file && slash && !bench->ask.scenes && i < 3; ++i) {
         snprintf(file, sizeof file, "%.*s/%s/%s.json", (int)(slash - bench->whit), bench->whit,
                  beside[i], name);
         whole = realpath(file, NULL);
     }
     if (!whole) {
-        if (bench->ask.scenes)
+        if (is_file)
+            cli_error("%s: is not there", cli_shown(name));
+        else if (bench->ask.scenes)
             cli_error("%s: cannot read: %s", file, strerror(errno));
         else
             cli_error("%s.json is not here: --scenes FOLDER says where whit's scenes are", name);

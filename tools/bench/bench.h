@@ -23,7 +23,8 @@ struct bench {
 
 /* Counts one step of the current table as done; an error where the user stopped the bench. */
 WHIT_CHECK whit_result bench_step(struct bench *bench);
-/* Finds the absolute path of whit's scene `name`, given without .json. */
+/* Finds the absolute path of whit's scene `name`, given without .json; with a `/` or a `.` it is a
+   file. */
 WHIT_CHECK whit_result bench_find(const struct bench *bench, const char *name,
                                   char path[BENCH_PATH]);
 void bench_file(const struct bench *bench, const char *name, char path[BENCH_PATH]);

@@ -2,7 +2,6 @@
    of numerics, and the tracing of only their rays by Embree. */
 #include "bench/frame_peers.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/path.h"
@@ -215,18 +214,7 @@ static whit_result find_scene(const struct bench *bench, const char *word, char 
     const char *base = path_name(word), *dot = strrchr(base, '.');
     snprintf(name, 40, "%.*s", (int)(dot ? (size_t)(dot - base) : strlen(base)), base);
     path[0] = 0;
-    if (is_pov(word))
-        return WHIT_OK;
-    char *whole = realpath(word, NULL);
-    if (!whole && !strchr(word, '/') && !dot)
-        return bench_find(bench, word, path);
-    if (!whole) {
-        cli_error("%s: is not there", cli_shown(word));
-        return WHIT_ERROR_INPUT;
-    }
-    snprintf(path, BENCH_PATH, "%s", whole);
-    free(whole);
-    return WHIT_OK;
+    return is_pov(word) ? WHIT_OK : bench_find(bench, word, path);
 }
 
 static whit_result run_words(struct table *table, const char *const *words, uint32_t count)

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "base/path.h"
 #include "base/vec.h"
 #include "bench/table.h"
 #include "whit/whit_program.h"
@@ -195,7 +196,7 @@ static void put_row(struct table *table, const struct views *views)
 static whit_result run_scene(struct table *table, const char *name, bool around)
 {
     char path[BENCH_PATH];
-    struct views views = {.bench = table->bench, .name = name, .around = around};
+    struct views views = {.bench = table->bench, .name = path_name(name), .around = around};
     views.side = table->bench->ask.width / VIEW_SIDE / (around ? 2 : 1);
     views.count = views.side * views.side;
     whit_result result = bench_find(table->bench, name, path);
