@@ -19,7 +19,46 @@ double cost_error_of(const whit_difference *difference, enum cost_metric metric)
     return metric == COST_FLIP ? difference->flip_mean : difference->rmse;
 }
 
+double choose_to_sum(double error, enum cost_metric metric)
+{
+    return metric == COST_RMSE ? error * error : error;
+}
+
+double choose_from_sum(double sum, enum cost_metric metric)
+{
+    sum = fmax(sum, 0.0);
+    return metric == COST_RMSE ? sqrt(sum) : sum;
+}
+
 /* ---- Rows ---- */
+
+/* The setting's bias: its error without the sampling error, which is measured against the reference
+   of one sample; the whole error where `alone` was not measured. */
+static double bias_of(const struct cost_row *row, enum cost_metric metric)
+{
+    return cost_error_of(row->alone.pixel_count ? &row->alone : &row->error, metric);
+}
+
+double choose_quadruple(const struct cost_report *report, enum cost_metric metric, double sum)
+{
+    double bias = fmin(choose_to_sum(bias_of(&report->rows[0], metric), metric), sum);
+    return bias + (sum - bias) / (metric == COST_RMSE ? 4.0 : 2.0);
+}
+
+double cost_error_left(const struct cost_report *report, const struct cost_row *row,
+                       enum cost_metric metric)
+{
+    double sum = choose_to_sum(cost_error_of(&row->error, metric), metric);
+    for (uint32_t i = 0; !cost_is_judged(report, row) && i < report->row_count; ++i) {
+        const struct cost_row *other = &report->rows[i];
+        bool counts = i == 0 || (other->measured && strcmp(other->knob, "aa") == 0);
+        if (counts && 4 * cost_samples(other) == report->reference_samples)
+            sum = fmax(
+                sum, choose_quadruple(report, metric,
+                                      choose_to_sum(cost_error_of(&other->error, metric), metric)));
+    }
+    return choose_from_sum(sum, metric);
+}
 
 static bool is_ranked(const struct cost_row *row)
 {
@@ -39,7 +78,8 @@ static bool beats(const struct cost_report *report, enum cost_metric metric,
                   const struct cost_row *a, const struct cost_row *b)
 {
     double a_ms = rank_ms(report, a), b_ms = rank_ms(report, b);
-    double a_error = cost_error_of(&a->error, metric), b_error = cost_error_of(&b->error, metric);
+    double a_error = cost_error_left(report, a, metric),
+           b_error = cost_error_left(report, b, metric);
     if (!is_ranked(a) || a_ms > b_ms || a_error > b_error * (1.0 + CHOOSE_AS_RIGHT))
         return false;
     return a_ms < b_ms || a_error < b_error * (1.0 - CHOOSE_AS_RIGHT) || a < b;
@@ -53,13 +93,6 @@ void cost_mark_best(struct cost_report *report, enum cost_metric metric)
             if (j != i && beats(report, metric, &report->rows[j], &report->rows[i]))
                 report->rows[i].best = false;
     }
-}
-
-/* The setting's bias: its error without the sampling error, which is measured against the reference
-   of one sample; the whole error where `alone` was not measured. */
-static double bias_of(const struct cost_row *row, enum cost_metric metric)
-{
-    return cost_error_of(row->alone.pixel_count ? &row->alone : &row->error, metric);
 }
 
 /* Number of rays in both sets whose hit is not the exact one. */
@@ -92,52 +125,16 @@ enum cost_use cost_use_of(const struct cost_report *report, const struct cost_ro
 
 /* ---- Choices ---- */
 
-double choose_to_sum(double error, enum cost_metric metric)
-{
-    return metric == COST_RMSE ? error * error : error;
-}
-
-double choose_from_sum(double sum, enum cost_metric metric)
-{
-    sum = fmax(sum, 0.0);
-    return metric == COST_RMSE ? sqrt(sum) : sum;
-}
-
-static double samples_of(const struct search *search, const struct cost_row *row)
-{
-    double value = strtod(row->setting, NULL); /* 0: adaptive sampling */
-    return value < 1.0 ? search->report->reference_samples
-                       : value; /* adaptive sampling takes up to reference_samples */
-}
-
-/* The sampling error of a row of knob `aa`. A row with as many samples as the reference has the
-   very samples of the reference, so its measured error lacks the sampling error. That is then taken
-   to be at least half the error of a quarter of the samples, as for random samples. */
-static double sampled_error(const struct search *search, const struct cost_row *row)
-{
-    const struct cost_report *report = search->report;
-    double error = cost_error_of(&row->error, search->goal->metric);
-    if (samples_of(search, row) < report->reference_samples)
-        return error;
-    for (uint32_t i = 0; i < report->row_count; ++i) {
-        const struct cost_row *other = &report->rows[i];
-        if (i > 0 && (other->knob_index != search->aa || !other->measured))
-            continue;
-        if (4.0 * (i > 0 ? samples_of(search, other) : 1.0) == report->reference_samples)
-            error = fmax(error, 0.5 * cost_error_of(&other->error, search->goal->metric));
-    }
-    return error;
-}
-
 static struct effect effect_of(const struct search *search, const struct cost_row *row)
 {
     const struct cost_row *usual = &search->report->rows[0];
     enum cost_metric metric = search->goal->metric;
     struct effect out = {.known = is_ranked(row)};
     out.ratio = row->price.verdict ? row->price.ratio[search->report->clock].median : 1.0;
-    out.error = row->knob_index == search->aa ? choose_to_sum(sampled_error(search, row), metric)
-                                              : choose_to_sum(bias_of(row, metric), metric) -
-                                                    choose_to_sum(bias_of(usual, metric), metric);
+    out.error = row->knob_index == search->aa
+                    ? choose_to_sum(cost_error_left(search->report, row, metric), metric)
+                    : choose_to_sum(bias_of(row, metric), metric) -
+                          choose_to_sum(bias_of(usual, metric), metric);
     return out;
 }
 
@@ -188,7 +185,7 @@ bool choose_is_searched(const struct search *search, uint32_t knob)
 }
 
 /* Tries all combinations of shading settings, knob by knob, and keeps the cheapest one below the
-   limit of error. */
+   limit of error; samples per pixel also beyond those that were measured. */
 static void walk(struct search *search, uint32_t knob, double ratio, double sum)
 {
     if (knob == search->count) {
@@ -196,7 +193,8 @@ static void walk(struct search *search, uint32_t knob, double ratio, double sum)
         double error = choose_from_sum(sum, search->goal->metric);
         if (error > search->goal->limit || (search->best.found && ms >= search->best.ms))
             return;
-        search->best = (struct cost_choice){.ms = ms, .error = error, .found = true};
+        search->best = (struct cost_choice){
+            .samples = search->samples, .ms = ms, .error = error, .found = true};
         memcpy(search->best.settings, search->settings, sizeof search->settings);
         return;
     }
@@ -211,6 +209,15 @@ static void walk(struct search *search, uint32_t knob, double ratio, double sum)
         if (effect->known)
             walk(search, knob + 1, ratio * effect->ratio, sum + effect->error);
     }
+    if (knob != search->aa)
+        return;
+    for (search->samples = 4; search->samples <= COST_SAMPLES_MAX; search->samples *= 4) {
+        const struct effect effect = choose_samples(search, search->samples);
+        search->settings[knob] = (uint8_t)search->table[knob].usual;
+        if (effect.known)
+            walk(search, knob + 1, ratio * effect.ratio, sum + effect.error);
+    }
+    search->samples = 0;
 }
 
 struct cost_choice cost_choose(const struct cost_report *report, const struct cost_goal *goal)

@@ -22,12 +22,16 @@ struct search {
     struct effect effects[COST_CHOICE_KNOBS][KNOB_SETTINGS_MAX];
     double usual_bias; /* the usual settings' error without the sampling error: choose_to_sum */
     uint8_t settings[COST_CHOICE_KNOBS];
+    uint32_t samples; /* 0: as the setting of knob `aa` says */
     struct cost_choice best;
 };
 
 /* Convert an error to a value that sums over settings (squared RMSE, or FLIP), and back. */
 double choose_to_sum(double error, enum cost_metric metric);
 double choose_from_sum(double sum, enum cost_metric metric);
+/* The sum of a picture with four times as many samples as one that has `sum`: half the sampling
+   error, as for random samples, and the same bias, which is that of the usual settings. */
+double choose_quadruple(const struct cost_report *report, enum cost_metric metric, double sum);
 /* Whether the search tries settings of this knob: only of knobs that change shading alone. */
 bool choose_is_searched(const struct search *search, uint32_t knob);
 

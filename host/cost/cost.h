@@ -161,14 +161,18 @@ uint64_t cost_hash(const char *text);
 #define COST_TOO_LITTLE 0.6
 
 double cost_error_of(const whit_difference *difference, enum cost_metric metric);
+/* The row's error. Where the reference cannot judge it (cost_is_judged), its sampling error was not
+   measured, and counts as at least half that of a quarter of the samples, as for random ones. */
+double cost_error_left(const struct cost_report *report, const struct cost_row *row,
+                       enum cost_metric metric);
 
 /* A choice of settings, predicted from a report's figures: ratios of time multiply, squared RMSE
    and FLIP add up. COST_UNDER: the cheapest settings with an error of at most `limit`. COST_WITHIN:
    the settings that take at most `limit` ms of wall clock 9 times of 10 and give up least, in the
    order of within.c, with as many samples as fit, up to 64. Knobs that change nothing get their
    fastest setting. Numerics and instances stay as they are, since one picture does not show their
-   errors. A row with as many samples as the reference counts with half the error of a quarter of
-   them. */
+   errors. Rows of knob `aa` count with cost_error_left. */
+enum { COST_SAMPLES_MAX = 256 }; /* of COST_UNDER: more than were measured are extrapolated */
 struct cost_choice {
     uint8_t settings[COST_CHOICE_KNOBS]; /* by index in knob_table: index of the knob's setting */
     uint32_t samples;                    /* per pixel; 0: as the setting of knob `aa` says */
@@ -223,8 +227,10 @@ struct cost_share {
 /* Adds the goals of the strip to a request, and sets keep_pictures. */
 void cost_strip_ask(struct cost_request *request);
 void cost_strip(const struct cost_report *report, struct cost_share strip[COST_STRIP]);
-/* Whether the reference can judge the row: not if both have the same number of samples, since these
-   are then the very same samples. */
+/* The most samples of a pixel of the row's picture. */
+uint32_t cost_samples(const struct cost_row *row);
+/* Whether the reference can judge the row: not if pixels have as many samples as the reference,
+   since these are then the very same samples. */
 bool cost_is_judged(const struct cost_report *report, const struct cost_row *row);
 /* A crop a fifth as wide and high as the judged picture, where the usual picture is most visibly
    wrong. */

@@ -244,10 +244,10 @@ static void destroy_pictures(struct cost_row *row)
     row->picture = row->flip = NULL;
 }
 
-static bool is_kept(const struct cost_goal *goal, const struct cost_row *row)
+/* Whether a row with this error keeps the goal. */
+static bool is_kept(const struct cost_goal *goal, const struct cost_row *row, double error)
 {
-    return goal->kind == COST_WITHIN ? row->ms[COST_WALL] <= goal->limit
-                                     : cost_error_of(&row->error, goal->metric) <= goal->limit;
+    return (goal->kind == COST_WITHIN ? row->ms[COST_WALL] : error) <= goal->limit;
 }
 
 static enum knob_level level_of(const struct cost_choice *choice)
@@ -281,7 +281,9 @@ static whit_result measure_choice(struct measure *measure, const struct cost_cho
     answer->row = report->row_count++;
     whit_result result =
         measure_row(measure, &target, level_of(choice), 0.05 * measure->request->seconds, row);
-    answer->kept = result == WHIT_OK && row->measured && is_kept(&answer->goal, row);
+    double error = cost_is_judged(report, row) ? cost_error_of(&row->error, answer->goal.metric)
+                                               : answer->error;
+    answer->kept = result == WHIT_OK && row->measured && is_kept(&answer->goal, row, error);
     return result;
 }
 
@@ -295,13 +297,13 @@ static void take_measured(const struct cost_report *report, struct cost_answer *
     uint32_t best_step = WHIT_NONE;
     for (uint32_t i = 0; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
-        double error = cost_error_of(&row->error, goal->metric);
+        double error = cost_error_left(report, row, goal->metric);
         double rank = goal->kind == COST_WITHIN ? error : row->ms[COST_WALL];
         /* WHIT_NONE + 1 is 0: rows that give up nothing come first. */
         uint32_t step = goal->kind == COST_WITHIN ? cost_step_of(row->knob, row->setting) + 1 : 0;
         /* Settings that change hits are never taken: one picture does not show which rays miss. */
-        if (!row->measured || row->broken || row->change == SETTING_HITS || !is_kept(goal, row) ||
-            step > best_step || (step == best_step && !(rank < best)))
+        if (!row->measured || row->broken || row->change == SETTING_HITS ||
+            !is_kept(goal, row, error) || step > best_step || (step == best_step && !(rank < best)))
             continue;
         best = rank;
         best_step = step;

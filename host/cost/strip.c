@@ -1,6 +1,6 @@
 /* The strip of a report: crops of pictures that took different times, which the HTML page and the
    viewer's panel show side by side. */
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "cost/cost.h"
@@ -31,10 +31,23 @@ void cost_strip(const struct cost_report *report, struct cost_share strip[COST_S
                 strip[i].row = report->answers[a].row;
 }
 
+uint32_t cost_samples(const struct cost_row *row)
+{
+    struct settings settings = settings_usual();
+    const whit_sampling *sampling = &settings.picture.sampling;
+    const char *option = strstr(row->option, "--aa ");
+    char value[COST_NAME], why[SETTING_WHY_BYTES];
+    if (!option)
+        return 1;
+    option += strlen("--aa ");
+    snprintf(value, sizeof value, "%.*s", (int)strcspn(option, " "), option);
+    setting_read(settings_row("aa"), value, &settings, why);
+    return sampling->kind == WHIT_SAMPLING_ADAPTIVE ? sampling->count_max : sampling->count;
+}
+
 bool cost_is_judged(const struct cost_report *report, const struct cost_row *row)
 {
-    const char *samples = strstr(row->option, "--aa ");
-    return !samples || strtod(samples + strlen("--aa "), NULL) < (double)report->reference_samples;
+    return cost_samples(row) < report->reference_samples;
 }
 
 /* ---- The crop ---- */

@@ -86,30 +86,37 @@ static const struct effect *sampled(const struct search *search, uint32_t sample
     return NULL;
 }
 
-/* The effect of a number of samples, interpolated between measured rows: time linearly, error by a
-   power law. Beyond the last row it is extrapolated as for random samples. */
-static struct effect samples_effect(const struct search *search, uint32_t samples)
+/* The effect of a power of 4 of samples. Where it was not measured it follows from a quarter of
+   them; one sample alone foretells nothing. */
+static struct effect power_effect(const struct search *search, uint32_t power)
 {
-    uint32_t below = 1, above = 0;
-    for (uint32_t n = 1; n <= SAMPLES_MOST; n *= 4) {
-        if (!sampled(search, n))
-            continue;
-        if (n <= samples)
-            below = n;
-        else if (!above)
-            above = n;
-    }
-    struct effect a = *sampled(search, below);
-    bool rmse = search->goal->metric == COST_RMSE;
-    double more = (double)samples / below;
-    if (!above)
-        return (struct effect){a.ratio * more, a.error / (rmse ? more : sqrt(more)), true};
-    const struct effect *b = sampled(search, above);
-    double share = (double)(samples - below) / (above - below);
-    double power = log(more) / log((double)above / below);
+    const struct effect *row = sampled(search, power);
+    if (row || power == 1)
+        return row ? *row : (struct effect){0};
+    const struct effect quarter = power_effect(search, power / 4);
     return (struct effect){
-        a.ratio + share * (b->ratio - a.ratio),
-        pow(fmax(a.error, 1e-30), 1.0 - power) * pow(fmax(b->error, 1e-30), power), true};
+        .ratio = 4.0 * quarter.ratio,
+        .error = choose_quadruple(search->report, search->goal->metric, quarter.error),
+        .known = power > 4 && quarter.known};
+}
+
+/* Between powers of 4 time and error go linearly, squared errors for RMSE: the sequence fills whole
+   powers evenly, other numbers of samples leave gaps. Beside 1024 samples at 96x72 the RMSE is 0.67
+   to 1.2 times that in whitted, sphereflake, atrium and 8k, and up to twice it in room, where few
+   pixels mirror lights. */
+struct effect choose_samples(const struct search *search, uint32_t samples)
+{
+    uint32_t below = 1;
+    while (4 * below <= samples)
+        below *= 4;
+    const struct effect a = power_effect(search, below);
+    if (below == samples)
+        return a;
+    const struct effect b = power_effect(search, 4 * below);
+    double share = (double)(samples - below) / (3.0 * below);
+    return (struct effect){.ratio = a.ratio + share * (b.ratio - a.ratio),
+                           .error = a.error + share * (b.error - a.error),
+                           .known = a.known && b.known};
 }
 
 /* ---- The choice ---- */
@@ -133,12 +140,11 @@ static struct effect others_effect(const struct search *search)
 static void take(struct search *search)
 {
     const struct effect others = others_effect(search);
-    uint32_t most = sampled(search, 4) || sampled(search, 16) ? SAMPLES_MOST : 1;
     uint32_t before = search->best.found ? search->best.samples : 0;
-    for (uint32_t n = most; n > before; --n) {
-        const struct effect samples = samples_effect(search, n);
+    for (uint32_t n = SAMPLES_MOST; n > before; --n) {
+        const struct effect samples = choose_samples(search, n);
         double ms = search->report->usual_ms_max * others.ratio * samples.ratio;
-        if (ms > search->goal->limit)
+        if (!samples.known || ms > search->goal->limit)
             continue;
         search->best = (struct cost_choice){
             .samples = n,

@@ -8,6 +8,10 @@
    or the fastest ones for knobs that change nothing. */
 void choose_within(struct search *search);
 
+/* The effect of any number of samples per pixel, by the measured rows of knob `aa`; `known` false:
+   these do not tell. */
+struct effect choose_samples(const struct search *search, uint32_t samples);
+
 /* cost_steps: number of steps in the order in which settings are given up for time. cost_step_of:
    index of the step that is this setting of this knob; WHIT_NONE: none, nothing is given up. */
 uint32_t cost_steps(void);

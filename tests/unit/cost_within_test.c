@@ -53,6 +53,7 @@ static void add_row(uint32_t knob, uint32_t setting, uint32_t samples)
                              .measured = samples > 0 || random_bits() % 16 > 0};
     snprintf(row->knob, sizeof row->knob, "%s", k->name);
     snprintf(row->setting, sizeof row->setting, "%s", knob_setting_name(k, setting));
+    knob_option(k, setting, row->option, sizeof row->option);
     row->price.verdict = samples || told_apart ? (ratio > 1.0 ? 1 : -1) : 0;
     row->price.ratio[COST_WALL].median = ratio;
     row->error = (whit_difference){.pixel_count = 1, .rmse = 0.1 / (samples ? samples : 1)};
@@ -196,6 +197,75 @@ TEST(a_short_budget_is_kept_in_the_median)
     assert_true(cost_choose_budget(&report, goal.limit).found);
     assert_true(cost_choose_budget(&report, goal.limit / 1.49).found);
     assert_false(cost_choose_budget(&report, goal.limit / 1.6).found);
+}
+
+/* The RMSE of whit's pictures of a textured scene with 1, 4, 16 and 64 samples. */
+static const double SAMPLED[] = {0.077, 0.029, 0.0089, 0.003};
+
+/* A report whose only rows are those of knob `aa` that a reference of so many samples allows. */
+static void make_samples_report(uint32_t reference_samples)
+{
+    uint32_t aa = knob_find("aa");
+    make_report();
+    report.reference_samples = reference_samples;
+    report.rows[0].error.rmse = report.rows[0].error.flip_mean = SAMPLED[0];
+    report.rows[0].alone.rmse = 1e-3;
+    report.row_count = 1;
+    for (uint32_t s = 1; s < (reference_samples == 64 ? 5 : 3); ++s) {
+        add_row(aa, s, 1u << 2 * s);
+        report.rows[s].error.rmse = report.rows[s].error.flip_mean = s < 3 ? SAMPLED[s] : 1e-6;
+        report.rows[s].ms[COST_WALL] = USUAL_MS * report.rows[s].price.ratio[COST_WALL].median;
+    }
+}
+
+/* Numbers of samples between powers of 4 are not spread evenly: these are the RMSE of pictures. */
+TEST(other_numbers_of_samples_than_powers_of_4_are_not_predicted_too_well)
+{
+    static const struct {
+        uint32_t samples;
+        double rmse;
+    } drawn[] = {{2, 0.068}, {3, 0.057}, {5, 0.0322}, {13, 0.0187}};
+    for (size_t i = 0; i < sizeof drawn / sizeof *drawn; ++i) {
+        make_samples_report(16);
+        const struct cost_goal goal = {COST_WITHIN, COST_RMSE, drawn[i].samples * 1.06 * USUAL_MS,
+                                       0.0};
+        const struct cost_choice choice = cost_choose(&report, &goal);
+        assert_int_equal(choice.samples, drawn[i].samples);
+        assert_true(choice.error > 0.85 * drawn[i].rmse && choice.error < 1.05 * drawn[i].rmse);
+    }
+}
+
+TEST(an_error_below_what_was_measured_takes_more_samples)
+{
+    static const uint32_t samples[] = {64, 256};
+    static const double limits[] = {0.008, 0.005};
+    make_samples_report(16);
+    struct cost_goal goal = {.kind = COST_UNDER, .metric = COST_RMSE};
+    for (size_t i = 0; i < 2; ++i) {
+        goal.limit = limits[i];
+        const struct cost_choice choice = cost_choose(&report, &goal);
+        assert_true(choice.found && choice.error <= goal.limit);
+        assert_int_equal(choice.samples, samples[i]);
+    }
+    goal.limit = 0.001; /* the bias of the usual settings, which more samples leave */
+    assert_false(cost_choose(&report, &goal).found);
+}
+
+/* With a reference of 64 samples they take up to as many, and those are the reference's own. */
+TEST(adaptive_samples_of_the_reference_are_not_sold_as_right)
+{
+    char text[COST_SENTENCE_BYTES];
+    make_samples_report(64);
+    struct cost_row *adaptive = &report.rows[4];
+    assert_string_equal(adaptive->setting, "adaptive:0.05");
+    adaptive->price.ratio[COST_WALL].median = 10.0;
+    adaptive->ms[COST_WALL] = 10.0 * USUAL_MS;
+    assert_false(cost_is_judged(&report, adaptive));
+    assert_true(cost_error_left(&report, adaptive, COST_FLIP) >= 0.5 * SAMPLED[2]);
+    cost_sentence(&report, text);
+    assert_null(strstr(text, "adaptive"));
+    snprintf(adaptive->option, sizeof adaptive->option, "--aa adaptive:0.05,4,16");
+    assert_true(cost_is_judged(&report, adaptive));
 }
 
 /* Shadows, glass and textures are given up last, after all that only makes pictures rougher. */

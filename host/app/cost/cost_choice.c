@@ -81,7 +81,9 @@ static struct cost_choice choose_first(const struct cost_report *report,
     if (!choice.found && settings->budget_ms > 0.0)
         cli_error("no setting takes at most %.6g ms here", settings->budget_ms);
     else if (!choice.found)
-        cli_error("no setting has an error of at most %.6g here", settings->max_error);
+        cli_error("no setting is predicted to have an error of at most %.6g here, with up to %d "
+                  "samples a pixel",
+                  settings->max_error, COST_SAMPLES_MAX);
     return choice;
 }
 

@@ -9,7 +9,7 @@
 #include "app/cost/cost_kept.h"
 #include "base/store.h"
 
-enum { KEPT_VERSION = 6 };
+enum { KEPT_VERSION = 7 };
 
 /* The record's name is a hash of everything that decides pixels or time (scene, device, driver,
    version of whit, settings), except the settings that are chosen. */

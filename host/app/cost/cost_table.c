@@ -147,15 +147,17 @@ void cost_say_method(const struct cost_report *report, cost_say *say, void *user
         "Times: %s of a %u x %u picture; each setting and the usual ones in turns; medians, with "
         "intervals of 95 %% of their ratios. Pictures that take long are timed smaller.",
         clocks[report->clock], report->width, report->height);
-    say_it(say, user,
-           "Errors: of a %u x %u picture, linear RGB, against the reference in double with %u "
-           "samples a pixel, %u bounces and a bail-out of 1/65536; `alone`: RMSE against the "
-           "reference with "
-           "the same single sample, which leaves out what samples do. %u samples are those of the "
-           "reference: their rows say nothing of what more would change. `best`: nothing is both "
-           "cheaper and more right.",
-           report->judged_width, report->judged_height, report->reference_samples,
-           report->reference_depth, report->reference_samples);
+    say_it(
+        say, user,
+        "Errors: of a %u x %u picture, linear RGB, against the reference in double with %u "
+        "samples a pixel, %u bounces and a bail-out of 1/65536; `alone`: RMSE against the "
+        "reference with "
+        "the same single sample, which leaves out what samples do. %u samples are those of the "
+        "reference: their rows, adaptive ones too, say nothing of what more would change, and "
+        "count with at least half the sampling error of a quarter of them. `best`: nothing is both "
+        "cheaper and more right.",
+        report->judged_width, report->judged_height, report->reference_samples,
+        report->reference_depth, report->reference_samples);
     say_spread(report, say, user);
     if (!report->complete)
         say_it(say, user, "This report is not complete: it was stopped.");
@@ -219,10 +221,13 @@ static void say_answer(const struct cost_report *report, const struct cost_answe
                metric, answer->error);
         return;
     }
-    say_it(say, user, "%s: %s. Predicted %.1f ms and %s %.3g; measured %.1f ms and %.3g: %s.", wish,
-           row->option[0] ? row->option : "the usual settings", answer->ms, metric, answer->error,
-           row->ms[COST_WALL], cost_error_of(&row->error, answer->goal.metric),
-           answer->kept ? "kept" : "NOT KEPT");
+    char error[64] = "no error, by a reference of no more samples";
+    if (cost_is_judged(report, row))
+        snprintf(error, sizeof error, "%.3g", cost_error_of(&row->error, answer->goal.metric));
+    say_it(say, user,
+           "%s: %s. Predicted %.1f ms and %s %.3g; measured %.1f ms and %s (ms: wall clock): %s.",
+           wish, row->option[0] ? row->option : "the usual settings", answer->ms, metric,
+           answer->error, row->ms[COST_WALL], error, answer->kept ? "kept" : "NOT KEPT");
 }
 
 void cost_say_answers(const struct cost_report *report, cost_say *say, void *user)
