@@ -17,7 +17,7 @@ whit_result api_complete_scene(whit_scene *scene, whit_result result, whit_scene
         whit_scene_destroy(scene);
         return result;
     }
-    scene_effects_scan(scene->scene, &scene->effects);
+    scene_effects_scan(scene->scene, false, &scene->effects);
     *out = scene;
     return WHIT_OK;
 }

@@ -82,7 +82,7 @@ whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct
     renderer->scene = accel->scene;
     if (params)
         renderer->params = *params;
-    scene_effects_scan(renderer->scene, &renderer->effects);
+    scene_effects_scan(renderer->scene, renderer->params.shader != NULL, &renderer->effects);
     hooks_take(renderer);
     effects_choose(&renderer->params, &renderer->effects);
     whit_result result = params_check(log, &renderer->params);

@@ -217,9 +217,12 @@ static enum scene_effect effect_of_light(whit_light_kind kind)
     return SCENE_EFFECT_AREA_LIGHTS;
 }
 
-static void scan_light(struct scene_effects *out, const struct scene_light *light)
+/* Without `functions`, which may read all lights, a light that sends no light is left out. */
+static void scan_light(struct scene_effects *out, bool functions, const struct scene_light *light)
 {
     char place[64];
+    if (!functions && !any(light->color))
+        return;
     place_of(&light->origin, place, sizeof place);
     const char *by = light->made_by_whit ? ", added by whit" : "";
     const struct text_token name = text_token(light->name);
@@ -309,13 +312,30 @@ uint32_t scene_effects_scan_materials(const struct scene *scene, enum scene_mate
     return count;
 }
 
-void scene_effects_scan(const struct scene *scene, struct scene_effects *out)
+/* For a scene of which nothing is lit. */
+static void drop_lights(struct scene_effects *out)
+{
+    static const enum scene_effect lights[] = {
+        SCENE_EFFECT_SHADOWS,      SCENE_EFFECT_TINTED_SHADOWS, SCENE_EFFECT_TERMINATOR,
+        SCENE_EFFECT_POINT_LIGHTS, SCENE_EFFECT_SPOT_LIGHTS,    SCENE_EFFECT_DIRECTIONAL_LIGHTS,
+        SCENE_EFFECT_AREA_LIGHTS,
+    };
+    for (size_t i = 0; i < sizeof lights / sizeof *lights; ++i) {
+        out->called[lights[i]] = false;
+        out->reasons[lights[i]][0] = '\0';
+    }
+}
+
+void scene_effects_scan(const struct scene *scene, bool functions, struct scene_effects *out)
 {
     memset(out, 0, sizeof *out);
     for (uint32_t i = 0; i < scene->light_count; ++i) /* first: tinted shadows need shadows */
-        scan_light(out, &scene->lights[i]);
+        scan_light(out, functions, &scene->lights[i]);
     scene_effects_scan_materials(scene, SCENE_MATERIALS_ALL, out);
     scan_geometry(scene, out);
+    /* Glass is lit where --effects leaves refraction out. */
+    if (!functions && !out->lit && !out->called[SCENE_EFFECT_REFRACTION])
+        drop_lights(out);
     const struct scene_environment *sky = &scene->environment;
     if (sky->kind == WHIT_ENVIRONMENT_MAP && sky->rgb)
         call(out, SCENE_EFFECT_ENVIRONMENT_MAP, "map `%s`",

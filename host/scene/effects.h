@@ -5,7 +5,9 @@
 #include "scene/scene.h"
 
 const char *scene_effect_name(enum scene_effect effect);
-void scene_effects_scan(const struct scene *scene, struct scene_effects *out);
+/* `functions`: functions of a user may read lights that light nothing, so these call for their
+   effects too. */
+void scene_effects_scan(const struct scene *scene, bool functions, struct scene_effects *out);
 enum { WORN_BY_TRIANGLES = 1, WORN_BY_SPHERES = 2 };
 /* By material: WORN_BY_* bits of the primitives that have it; free() it. NULL: out of memory, where
    the functions below count all materials as used. Effects of unused ones, as in material

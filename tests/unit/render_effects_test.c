@@ -431,7 +431,7 @@ TEST(every_effect_has_its_code)
     struct scene_effects effects;
     struct scene *rich = rich_scene();
     assert_int_equal(scene_freeze(rich), WHIT_OK);
-    scene_effects_scan(rich, &effects);
+    scene_effects_scan(rich, false, &effects);
     scene_destroy(rich);
     uint32_t whole = kernel_of(rich_scene(), &small).instructions, missing = 0;
     print_message("  %-20s %6u instructions\n", "all of the rich scene", whole);

@@ -99,7 +99,7 @@ TEST(bad_spheres_are_dropped_and_counted)
     assert_true(m->lo[0] <= -1e17f && m->hi[2] >= 1e17f);
     assert_true(scene_noted(scene, "6 spheres dropped"));
     struct scene_effects effects;
-    scene_effects_scan(scene, &effects);
+    scene_effects_scan(scene, false, &effects);
     assert_true(effects.called[SCENE_EFFECT_SPHERES]);
 }
 

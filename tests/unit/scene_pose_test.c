@@ -220,7 +220,7 @@ TEST(effects_have_reasons)
 {
     own_scene *scene = glass_scene();
     struct scene_effects effects;
-    scene_effects_scan(scene, &effects);
+    scene_effects_scan(scene, false, &effects);
     assert_string_equal(effects.reasons[SCENE_EFFECT_REFRACTION],
                         "material `glass`, illum 7, box.mtl:41");
     assert_true(effects.called[SCENE_EFFECT_FRESNEL]);
@@ -237,4 +237,38 @@ TEST(effects_have_reasons)
         assert_false(effects.called[others[i]]);
     for (int i = 0; i < SCENE_EFFECT_COUNT; ++i)
         assert_non_null(scene_effect_name((enum scene_effect)i));
+}
+
+/* The effects of a box of this model under a sun of this strength. */
+static struct scene_effects effects_under(whit_material_model model, float strength, bool functions)
+{
+    own_scene *scene = scene_begin(NULL, "test");
+    struct scene_effects effects;
+    struct scene_material material = material_grey("box");
+    material.model = model;
+    scene_put(scene, mesh_box(2, 2, 2), &(struct put){.material = &material});
+    scene_put_sun(scene, 0, -1, 0, strength);
+    scene_ready(scene);
+    scene_effects_scan(scene, functions, &effects);
+    return effects;
+}
+
+TEST(lights_that_light_nothing_call_for_nothing)
+{
+    static const enum scene_effect lights[] = {SCENE_EFFECT_DIRECTIONAL_LIGHTS,
+                                               SCENE_EFFECT_SHADOWS};
+    struct scene_effects lit = effects_under(WHIT_MODEL_PHONG, 1.0f, false),
+                         black = effects_under(WHIT_MODEL_PHONG, 0.0f, false),
+                         unlit = effects_under(WHIT_MODEL_UNLIT, 1.0f, false);
+    for (size_t i = 0; i < sizeof lights / sizeof *lights; ++i) {
+        assert_true(lit.called[lights[i]]);
+        assert_false(black.called[lights[i]]);
+        assert_false(unlit.called[lights[i]]);
+        assert_string_equal(unlit.reasons[lights[i]], "");
+    }
+    /* Functions of a user may read them. */
+    black = effects_under(WHIT_MODEL_PHONG, 0.0f, true);
+    unlit = effects_under(WHIT_MODEL_UNLIT, 1.0f, true);
+    assert_true(black.called[SCENE_EFFECT_DIRECTIONAL_LIGHTS]);
+    assert_true(unlit.called[SCENE_EFFECT_SHADOWS]);
 }
