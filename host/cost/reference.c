@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/log.h"
 #include "base/store.h"
 #include "cost/reference.h"
 #include "whit/whit_program.h"
@@ -114,6 +115,19 @@ static whit_result render(const struct measure *measure, const whit_renderer_par
     return result;
 }
 
+/* Says beforehand that the picture of all samples takes longer than all that was asked for, by the
+   one of a single sample. */
+static void say_time(const struct measure *measure)
+{
+    const struct cost_report *report = measure->report;
+    double seconds = report->reference_ms[0] * report->reference_samples * 1e-3;
+    if (seconds > measure->request->seconds)
+        log_info(measure->request->log,
+                 "the reference in double takes about %.0f s, more than the %.3g s that all should "
+                 "take; a smaller --size takes less, and so does --reference-samples 16 or 4",
+                 seconds, measure->request->seconds);
+}
+
 static whit_result make(struct measure *measure, uint32_t shrink, uint32_t index)
 {
     struct cost_report *report = measure->report;
@@ -123,6 +137,8 @@ static whit_result make(struct measure *measure, uint32_t shrink, uint32_t index
     report->reference_cached[index] = measure->references[index] != NULL;
     whit_result result = WHIT_OK;
     if (!measure->references[index]) {
+        if (index > 0)
+            say_time(measure);
         result =
             render(measure, &params, &measure->references[index], &report->reference_ms[index]);
         if (result == WHIT_OK)

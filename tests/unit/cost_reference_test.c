@@ -6,14 +6,17 @@
 
 enum { SIDE = 64, SAMPLES = 4 };
 static struct cost_report report;
+static double asked_s; /* for the whole report */
 
 /* Makes references for a picture of SIDE x SIDE pixels. All judged pictures of a pixel take
    7/3 * pixel_ms for each sample of the reference. */
 static void make(uint32_t samples_max, uint32_t side_min, double pixel_ms, double seconds)
 {
+    const whit_log log = messages_log(&messages);
     const struct cost_request request = {.scene = scene,
                                          .accel = accel,
-                                         .log = &warnings_log,
+                                         .log = &log,
+                                         .seconds = asked_s,
                                          .samples_max = samples_max,
                                          .judged_width_min = side_min,
                                          .judged_height_min = side_min};
@@ -63,6 +66,18 @@ TEST_IN(a_kept_reference_takes_no_time, begin, end)
     make(SAMPLES, 0, 0.0, 0.0);
     assert_int_equal(report.judged_width, SIDE / 2);
     assert_true(report.reference_cached[0] && report.reference_cached[1]);
+}
+
+TEST_IN(a_reference_that_takes_longer_than_all_should_is_announced, begin, end)
+{
+    asked_s = 1e-6;
+    make(SAMPLES, 0, 0.0, 0.0);
+    assert_non_null(strstr(messages.last, "the reference in double takes about"));
+    make(SAMPLES, 0, 0.0, 0.0); /* it is kept */
+    assert_int_equal(messages.count, 0);
+    asked_s = 1e6;
+    make(SAMPLES, SIDE, 0.0, 0.0);
+    assert_int_equal(messages.count, 0);
 }
 
 TEST_IN(few_samples_keep_the_judged_picture_large, begin, end)

@@ -31,7 +31,7 @@ static whit_result measure(struct job *job, struct cost_report **report)
         .progress = cli_progress_tell,
         .progress_user = &progress,
         .hush = cli_hush,
-        .log = &cli_log,
+        .log = job->settings.quiet ? &cli_log : &cli_log_notes,
     };
     if (!job->settings.quiet)
         cli_note("measuring what settings cost in this scene, once");
