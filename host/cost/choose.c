@@ -60,9 +60,17 @@ double cost_error_left(const struct cost_report *report, const struct cost_row *
     return choose_from_sum(sum, metric);
 }
 
-static bool is_ranked(const struct cost_row *row)
+/* Without rays nothing is known of how right settings are that change hits: hardly any picture
+   shows it. */
+static bool lacks_rays(const struct cost_report *report, const struct cost_row *row)
 {
-    return row->measured && !row->broken && !row->hits[COST_CAMERA].unanswered;
+    return row->change == SETTING_HITS && !report->rows[0].hits[COST_AIMED].traced;
+}
+
+static bool is_ranked(const struct cost_report *report, const struct cost_row *row)
+{
+    return row->measured && !row->broken && !row->hits[COST_CAMERA].unanswered &&
+           !lacks_rays(report, row);
 }
 
 /* The row's time; the usual picture's time where the two cannot be distinguished. */
@@ -80,7 +88,7 @@ static bool beats(const struct cost_report *report, enum cost_metric metric,
     double a_ms = rank_ms(report, a), b_ms = rank_ms(report, b);
     double a_error = cost_error_left(report, a, metric),
            b_error = cost_error_left(report, b, metric);
-    if (!is_ranked(a) || a_ms > b_ms || a_error > b_error * (1.0 + CHOOSE_AS_RIGHT))
+    if (!is_ranked(report, a) || a_ms > b_ms || a_error > b_error * (1.0 + CHOOSE_AS_RIGHT))
         return false;
     return a_ms < b_ms || a_error < b_error * (1.0 - CHOOSE_AS_RIGHT) || a < b;
 }
@@ -88,7 +96,7 @@ static bool beats(const struct cost_report *report, enum cost_metric metric,
 void cost_mark_best(struct cost_report *report, enum cost_metric metric)
 {
     for (uint32_t i = 0; i < report->row_count; ++i) {
-        report->rows[i].best = is_ranked(&report->rows[i]);
+        report->rows[i].best = is_ranked(report, &report->rows[i]);
         for (uint32_t j = 0; report->rows[i].best && j < report->row_count; ++j)
             if (j != i && beats(report, metric, &report->rows[j], &report->rows[i]))
                 report->rows[i].best = false;
@@ -118,6 +126,8 @@ enum cost_use cost_use_of(const struct cost_report *report, const struct cost_ro
         more_right = more_right || inexact_hits(row) < inexact_hits(usual);
         less_right = less_right || inexact_hits(row) > inexact_hits(usual);
     }
+    if (lacks_rays(report, row))
+        return COST_USE_TRADE;
     if (row->price.verdict < 0)
         return less_right ? COST_USE_TRADE : COST_USE_FREE;
     return more_right ? COST_USE_TRADE : COST_USE_NONE;
@@ -129,7 +139,7 @@ static struct effect effect_of(const struct search *search, const struct cost_ro
 {
     const struct cost_row *usual = &search->report->rows[0];
     enum cost_metric metric = search->goal->metric;
-    struct effect out = {.known = is_ranked(row)};
+    struct effect out = {.known = is_ranked(search->report, row)};
     out.ratio = row->price.verdict ? row->price.ratio[search->report->clock].median : 1.0;
     out.error = row->knob_index == search->aa
                     ? choose_to_sum(cost_error_left(search->report, row, metric), metric)
@@ -167,7 +177,7 @@ static void take_free(struct search *search)
     for (uint32_t i = 1; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
         uint32_t k = row->knob_index;
-        if (k == WHIT_NONE || !is_ranked(row) || row->change != SETTING_COST)
+        if (k == WHIT_NONE || !is_ranked(report, row) || row->change != SETTING_COST)
             continue;
         double ratio = row->price.ratio[report->clock].median;
         double saved_ms = report->rows[0].ms[COST_WALL] * (1.0 - ratio);

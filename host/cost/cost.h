@@ -67,7 +67,8 @@ struct cost_row {
     uint64_t non_finite;
     bool broken; /* a defect: `change` is SETTING_COST, but pixels or ids changed */
     struct cost_hits hits[COST_SETS];
-    bool best;           /* in the Pareto set: no measured row is faster and as right */
+    bool best;           /* in the Pareto set: no measured row is faster and as right; false for
+                            settings that change hits where no rays were traced */
     whit_image *picture; /* at the judged size, or NULL */
     whit_image *flip;    /* its FLIP map to the reference, or NULL */
 };
@@ -141,8 +142,9 @@ struct cost_request {
     const whit_log *log;
 };
 
-/* Makes a report. WHIT_ERROR_CANCELLED where `cancel` stopped it; *out then has what was measured
-   before. *out is NULL where not even the usual settings were measured. */
+/* Makes a report. WHIT_ERROR_CANCELLED where `cancel` stopped it, WHIT_ERROR_TIME_LIMIT where
+   time_limit_s did; *out then has what was measured before. *out is NULL where not even the usual
+   settings were measured. */
 WHIT_CHECK whit_result cost_measure(const struct cost_request *request, struct cost_report **out);
 void cost_report_destroy(struct cost_report *report);
 /* Frees the pictures that keep_pictures kept; the figures stay. */

@@ -142,6 +142,10 @@ uint64_t knobs_of_light(void)
 
 /* ---- What a scene calls for ---- */
 
+/* One tree over more copies of triangles takes longer to build, again and again, than a report may
+   take, and nothing stops a build. */
+enum { COPIES_MAX = 1000000 };
+
 static bool calls_for(const whit_scene *scene, const char *wanted)
 {
     const char *name;
@@ -170,6 +174,9 @@ const char *knob_absence(const struct knob *knob, uint32_t setting, const whit_s
         return "it is what the scene takes by itself";
     if (strcmp(knob->name, "instances") == 0 && !info.one_tree && info.sphere_count > 0)
         return "the scene has spheres";
+    if (strcmp(knob->name, "instances") == 0 && !info.one_tree &&
+        info.triangle_count > info.mesh_triangle_count + COPIES_MAX)
+        return "it would copy over a million triangles";
     if (knob_level(knob) == KNOB_TREE && info.triangle_count == 0)
         return "the scene has no triangles";
     if (strcmp(knob->name, "load-path") == 0 && wanted->value == (int)usual_path)

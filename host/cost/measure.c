@@ -160,17 +160,16 @@ static void add_row(struct cost_report *report, const struct knob *knob, uint32_
     knob_option(knob, setting, row->option, sizeof row->option);
 }
 
-static bool is_wanted(const struct cost_request *request, const struct cost_report *report,
-                      uint32_t knob, uint32_t setting)
+/* Why the knob's setting is not measured; NULL: it is. */
+static const char *find_absence(const struct cost_request *request,
+                                const struct cost_report *report, const struct knob *knob,
+                                uint32_t setting)
 {
-    uint32_t count;
-    const struct knob *table = knob_table(&count);
-    if (request->knobs != COST_KNOBS_ALL && !(request->knobs >> knob & 1))
-        return false;
-    /* The reference cannot judge more samples than it has; adaptive sampling takes up to 64. */
-    double samples = strtod(knob_setting_name(&table[knob], setting), NULL); /* adaptive: 0 */
-    return strcmp(table[knob].name, "aa") != 0 ||
-           (samples < 1.0 ? 64.0 : samples) <= report->reference_samples;
+    struct cost_row row;
+    knob_option(knob, setting, row.option, sizeof row.option);
+    if (cost_samples(&row) > report->reference_samples)
+        return "more samples than the reference, which cannot judge it";
+    return knob_absence(knob, setting, request->scene, report->load_path);
 }
 
 static void list_rows(const struct cost_request *request, struct cost_report *report)
@@ -184,10 +183,12 @@ static void list_rows(const struct cost_request *request, struct cost_report *re
                                         .ms = {-1.0, -1.0, -1.0}};
     report->row_count = 1;
     for (uint32_t k = 0; k < count; ++k) {
+        if (request->knobs != COST_KNOBS_ALL && !(request->knobs >> k & 1))
+            continue;
         for (uint32_t s = 0; s < table[k].count; ++s) {
-            const char *why = knob_absence(&table[k], s, request->scene, report->load_path);
-            if (s == table[k].usual || !is_wanted(request, report, k, s))
+            if (s == table[k].usual)
                 continue;
+            const char *why = find_absence(request, report, &table[k], s);
             if (why)
                 note_absence(report, &table[k], s, why);
             else if (report->row_count < COST_ROWS_MAX)
@@ -369,7 +370,8 @@ whit_result cost_measure(const struct cost_request *request, struct cost_report 
     measure_close(&measure);
     report->spent_ms = whit_clock_ms() - measure.start_ms;
     cost_mark_best(report, COST_FLIP);
-    if ((result == WHIT_OK || result == WHIT_ERROR_CANCELLED) && report->rows[0].measured)
+    bool stopped = result == WHIT_ERROR_CANCELLED || result == WHIT_ERROR_TIME_LIMIT;
+    if ((result == WHIT_OK || stopped) && report->rows[0].measured)
         *out = report;
     else
         cost_report_destroy(report);

@@ -39,6 +39,7 @@ shows "a scene by known clocks" "^usual  " cost "$GLASS" $small --reference-samp
     --knobs aa,depth,light-samples --csv "$C" --html "$OUT/files/cost.html" \
     --markdown "$OUT/files/cost.md" --json "$J" --metric rmse --under 0.03 --within 1e6
 check "what is not here is named" grep -q "^Not here: .*light-samples 1" "$OUT/stdout"
+cp "$OUT/stdout" "$OUT/known"
 check "--under is kept" grep -q "^Cheapest with rmse up to 0.03: .*: kept" "$OUT/stdout"
 check "rows of other samples are not held against one sample" jq -e '(.rows | map(select(.knob == "chosen")) | length > 1) and
     all(.rows[]; (.alone == null) == (.option | contains("--aa")))' "$J"
@@ -83,6 +84,14 @@ check "no bounces: far off ($(value "$C" depth 0 alone_rmse))" \
 expect 0 "compared with itself" cost --compare "$J" "$J"
 check "nothing is distinguishable" \
     test "$(grep -c 'dearer in\|cheaper in' "$OUT/stdout")" -eq 0
+jq '(.rows[] | select(.knob == "aa" and .setting == "4").price) |= (.width = 7 | .height = 5 |
+    (.cpu, .wall | objects).ratio |= {median: 9, low: 8, high: 10, coverage: 0.95})' "$J" >"$OUT/files/smaller.json"
+expect 0 "compared with smaller pictures" cost --compare "$J" "$OUT/files/smaller.json"
+check "no change is told where the sizes differ" grep -q "^aa  *4 .* timed at other sizes " "$OUT/stdout"
+check "the CSV has the sizes" test "$(value "$C" aa 4 width) $(value "$C" aa 4 height)" = \
+    "$(jq -r '.rows[] | select(.knob == "aa" and .setting == "4").price | "\(.width) \(.height)"' "$J")"
+check "samples that the reference has not are not here" grep -q \
+    "^Not here: aa 64, aa adaptive:0.05 (more samples than the reference, which cannot judge it)" "$OUT/known"
 
 if part 1 2; then
     expect 0 "what may change nothing" cost "$CUBE" $small --reference-samples 4 \
@@ -111,6 +120,13 @@ JSON
         check "$row: rays are held against its triangles ($most ulp)" holds "$most < 100"
     done
     check "what the scene takes by itself is no row" grep -q "^Not here: .*instances off" "$OUT/stdout"
+    cat >"$OUT/many.json" <<'JSON'
+{ "camera": { "eye": [12, 10, 16], "target": [0, 0, 0] },
+  "objects": [ { "shape": "torus", "radius": 0.3, "repeat": { "count": [7, 6, 6], "step": [1, 1, 1] } } ] }
+JSON
+    expect 0 "many instances" cost "$OUT/many.json" $small --reference-samples 4 --knobs instances --rays 0
+    check "are not copied into one tree" grep -q \
+        "^Not here: instances on (.*), instances off (it would copy over a million triangles)" "$OUT/stdout"
 fi
 check "the reference is kept" test "$(find "$OUT/cache" -name 'reference-*' | wc -l)" -ge 2
 expect 0 "one knob" cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$C"
@@ -120,6 +136,9 @@ if part 0 2; then
     expect 1 "an error that nothing has" cost "$CUBE" $small --reference-samples 4 --knobs shadows --rays 0 \
         --under 1e-9
     check "says so" grep -q "no setting was found with an error" "$OUT/stderr"
+    refuse 5 "a time limit" "passed with [123] of 4 settings measured" cost "$CUBE" $small --reference-samples 4 \
+        --knobs aa,traversal --rays 0 --time-limit 3 --json "$OUT/files/part.json"
+    check "keeps what was measured" jq -e '.complete == false and .rows[0].measured' "$OUT/files/part.json"
 fi
 
 # ---- Choices of `whit render` ----
@@ -227,6 +246,14 @@ if part 0 2; then
         holds "$(value "$D" build median aimed_wrong) > $(value "$D" usual "" aimed_wrong)"
 fi
 
+export WHIT_TEST_WRONG=waits
+run cost "$CUBE" $small --reference-samples 4 --knobs build,numerics --rays 0
+unset WHIT_TEST_WRONG
+check "builds and pictures are compared by one clock" grep -q \
+    "^build median: 1.0 ms to build beside 9.0; dearer from 1 picture on, by the wall clock" "$OUT/stdout"
+check "without rays no hits are called as right" test "$(grep -c \
+    "^numerics .* best\|\(as right\|more right)\): .*numerics" "$OUT/stdout")" -eq 0
+
 export WHIT_TEST_WRONG=slow
 run cost "$GLASS" $small --reference-samples 4 --knobs depth --rays 0 --csv "$D"
 unset WHIT_TEST_WRONG
@@ -245,6 +272,9 @@ refuse 2 "no error at all" "a number from" cost "$CUBE" --under 0
 refuse 2 "no such metric" "flip, rmse" cost "$CUBE" --metric psnr
 refuse 2 "too many scenes" "too many" cost "$CUBE" "$CUBE"
 refuse 2 "one file to compare" "two files" cost --compare "$CUBE"
+for option in "--json $J" "--knobs aa" "--size 640x480"; do
+    refuse 2 "$option of no measurement" "takes no ${option%% *}" cost --compare "$J" "$J" $option
+done
 refuse 2 "no report" "no report of" cost --compare "$CUBE" "$CUBE"
 cp "$CUBE" "$OUT/scene.json"
 refuse 2 "a report in place of the scene" "SCENE and --json name the same file" \

@@ -18,6 +18,7 @@ struct cost {
     uint32_t rays; /* COST_RAYS_UNSAID: chosen by whit */
     char *command; /* the command line of this run; owned */
     struct cli_progress progress;
+    char doing[COST_NAME]; /* what is being measured, for errors */
     struct cost_report *report;
 };
 

@@ -118,8 +118,28 @@ static void complete(struct cost *cost)
         cost_strip_ask(request);
 }
 
+static const struct cost usual_cost = {.rays = COST_RAYS_UNSAID, .metric = COST_FLIP};
+
+/* The name of an option that was given and that --compare does not read; NULL: there is none. */
+static const char *find_ignored(const struct cost *cost)
+{
+    for (const struct setting *row = options; row->name; ++row) {
+        if (strcmp(row->name, "compare") != 0 && !setting_same(row, cost, &usual_cost))
+            return row->name;
+    }
+    for (const struct setting *row = settings_table; row->name; ++row) {
+        if (strcmp(row->name, "quiet") != 0 && settings_given(&cost->job.settings, row->name))
+            return row->name;
+    }
+    return cost->request.knobs ? "knobs" : NULL;
+}
+
 static bool check_request(struct cli_reader *reader, struct cost *cost)
 {
+    const char *ignored = cost->compares ? find_ignored(cost) : NULL;
+    if (ignored)
+        return cli_misuse(reader, "--compare prints two reports side by side, and takes no --%s",
+                          ignored);
     if (cost->compares && !reader->second)
         return cli_misuse(reader, "--compare needs two files that --json wrote");
     if (!cost->compares && !reader->positional)
@@ -130,6 +150,15 @@ static bool check_request(struct cli_reader *reader, struct cost *cost)
 }
 
 /* ---- Work ---- */
+
+/* Errors name what was being measured. */
+static void tell(void *user, double done, double seconds_left, const char *what)
+{
+    struct cost *cost = user;
+    snprintf(cost->doing, sizeof cost->doing, "%s", what);
+    cli_errors_of(cost->doing);
+    cli_progress_tell(&cost->progress, done, seconds_left, what);
+}
 
 static whit_result find_out(struct cost *cost)
 {
@@ -152,12 +181,13 @@ static whit_result find_out(struct cost *cost)
     request->settings = &job->settings;
     request->cancel = &cli_cancel;
     request->time_limit_s = cli_time_left_s();
-    request->progress = cli_progress_tell;
-    request->progress_user = &cost->progress;
+    request->progress = tell;
+    request->progress_user = cost;
     request->hush = cli_hush;
-    request->log = &cli_log;
+    request->log = job->settings.quiet ? &cli_log : &cli_log_notes;
     cli_keep_what_is_done(GRACE_MS);
     result = cost_measure(request, &cost->report);
+    cli_errors_of(NULL);
     cli_progress_finish(&cost->progress);
     return result;
 }
@@ -202,11 +232,14 @@ static int judge(const struct cost_report *report)
     return status;
 }
 
-static void say_stopped(struct cost *cost)
+static void say_stopped(struct cost *cost, whit_result result)
 {
     uint32_t measured = 0;
     for (uint32_t i = 0; i < cost->report->row_count; ++i)
         measured += cost->report->rows[i].measured;
+    if (result == WHIT_ERROR_TIME_LIMIT)
+        cli_error("the time limit passed with %u of %u settings measured", measured,
+                  cost->report->row_count);
     cli_set_kept(measured, cost->report->row_count, "settings were measured");
 }
 
@@ -218,7 +251,7 @@ static int work(struct cost *cost)
     whit_result saved = save_all(cost);
     int status = cost_print_text(cost);
     if (result != WHIT_OK) {
-        say_stopped(cost);
+        say_stopped(cost, result);
         return cli_exit_of(result);
     }
     if (saved != WHIT_OK)
@@ -231,7 +264,7 @@ static int work(struct cost *cost)
 static int run(const struct cli_command *command, int argc, char **argv)
 {
     struct cli_reader reader;
-    struct cost cost = {.rays = COST_RAYS_UNSAID, .metric = COST_FLIP};
+    struct cost cost = usual_cost;
     job_init(&cost.job, command);
     cli_reader_init(&reader, command, argc, argv);
     if (!job_read(&cost.job, &reader, &cost, true) || !check_request(&reader, &cost))
@@ -266,7 +299,8 @@ const struct cli_command command_cost = {
         "in the user's cache folder. Hits are held against exact arithmetic, for rays of the\n"
         "picture and for rays aimed at the scene's edges and vertices. Exit code 1 when a setting\n"
         "that may change nothing changes a picture, or when --under or --within cannot be met.\n"
-        "`whit cost --compare A B`: two files of --json. Ctrl+C keeps what is measured.\n",
+        "`whit cost --compare A B`: two files of --json. Ctrl+C and --time-limit keep what is\n"
+        "measured.\n",
     .options = options,
     .settings = IN_COST,
     .takes_two = true,

@@ -29,6 +29,11 @@ static struct sample_median time_of(const struct cost_report *report, const stru
 static const char *verdict_of(const struct cost_report *a, const struct cost_row *x,
                               const struct cost_report *b, const struct cost_row *y)
 {
+    bool same_size = x == &a->rows[0]
+                         ? a->width == b->width && a->height == b->height
+                         : x->price.width == y->price.width && x->price.height == y->price.height;
+    if (!same_size)
+        return "timed at other sizes";
     const struct sample_median before = time_of(a, x), after = time_of(b, y);
     int verdict = sample_compare_apart(&after, &before);
     return verdict > 0 ? "dearer in B" : verdict < 0 ? "cheaper in B" : "not distinguishable";

@@ -121,7 +121,7 @@ static void fill_hits(const struct cost_row *row, enum cost_set set, struct cost
 static void say_it(cost_say *say, void *user, const char *format, ...) WHIT_PRINTF(3, 4);
 static void say_it(cost_say *say, void *user, const char *format, ...)
 {
-    char text[1024];
+    char text[COST_ABSENT_MAX * sizeof(struct cost_absent)];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
@@ -177,28 +177,49 @@ static void say_list(const struct cost_report *report, enum cost_use use, const 
         say_it(say, user, "%s: %s.", what, list);
 }
 
-/* Says after how many pictures the faster rendering by a tree outweighs its longer build. */
+/* Says after how many pictures the faster rendering by a tree outweighs its longer build. All by
+   the wall clock, by which builds are timed. */
 static void say_break_even(const struct cost_report *report, cost_say *say, void *user)
 {
     const struct cost_row *usual = &report->rows[0];
     for (uint32_t i = 1; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
+        const struct sample_median *difference = &row->price.difference[COST_WALL];
+        bool told_apart = difference->low > 0.0 || difference->high < 0.0;
         double saved_ms = usual->ms[COST_WALL] - row->ms[COST_WALL];
         double built_ms = row->build_ms - usual->build_ms;
         if (!row->measured || row->build_ms < 0.0)
             continue;
-        if (row->price.verdict == 0 || saved_ms * built_ms <= 0.0)
-            say_it(say, user, "%s %s: %.1f ms to build beside %.1f; a picture is %s.", row->knob,
-                   row->setting, row->build_ms, usual->build_ms,
-                   row->price.verdict == 0 ? "not distinguishable"
-                   : saved_ms > 0.0        ? "cheaper"
-                                           : "dearer");
+        if (!told_apart || saved_ms * built_ms <= 0.0)
+            say_it(say, user,
+                   "%s %s: %.1f ms to build beside %.1f; a picture is %s, by the wall clock.",
+                   row->knob, row->setting, row->build_ms, usual->build_ms,
+                   !told_apart      ? "not distinguishable"
+                   : saved_ms > 0.0 ? "cheaper"
+                                    : "dearer");
         else
-            say_it(say, user, "%s %s: %.1f ms to build beside %.1f; %s from %.0f picture%s on.",
+            say_it(say, user,
+                   "%s %s: %.1f ms to build beside %.1f; %s from %.0f picture%s on, by the wall "
+                   "clock.",
                    row->knob, row->setting, row->build_ms, usual->build_ms,
                    saved_ms > 0.0 ? "cheaper" : "dearer", ceil(built_ms / saved_ms),
                    built_ms / saved_ms <= 1.0 ? "" : "s");
     }
+}
+
+/* Lists the settings that were not measured, and behind those of one reason the reason. */
+static void say_absent(const struct cost_report *report, cost_say *say, void *user)
+{
+    char list[sizeof report->absent] = "";
+    for (uint32_t i = 0; i < report->absent_count; ++i) {
+        const struct cost_absent *absent = &report->absent[i];
+        bool last = i + 1 == report->absent_count || strcmp(absent[1].why, absent->why) != 0;
+        text_add(list, sizeof list, "%s%s", i ? ", " : "", absent->name);
+        if (last)
+            text_add(list, sizeof list, " (%s)", absent->why);
+    }
+    if (list[0])
+        say_it(say, user, "Not here: %s.", list);
 }
 
 static void say_answer(const struct cost_report *report, const struct cost_answer *answer,
@@ -217,8 +238,8 @@ static void say_answer(const struct cost_report *report, const struct cost_answe
     }
     const struct cost_row *row = answer->row == WHIT_NONE ? NULL : &report->rows[answer->row];
     if (!row || !row->measured) {
-        say_it(say, user, "%s: predicted %.1f ms and %s %.3g, not measured.", wish, answer->ms,
-               metric, answer->error);
+        say_it(say, user, "%s: predicted %.1f ms (wall clock) and %s %.3g, not measured.", wish,
+               answer->ms, metric, answer->error);
         return;
     }
     char error[64] = "no error, by a reference of no more samples";
@@ -232,17 +253,13 @@ static void say_answer(const struct cost_report *report, const struct cost_answe
 
 void cost_say_answers(const struct cost_report *report, cost_say *say, void *user)
 {
-    char list[800] = "";
     for (uint32_t i = 0; i < report->answer_count; ++i)
         if (!(report->answers[i].goal.of_usual > 0.0))
             say_answer(report, &report->answers[i], say, user);
     say_list(report, COST_USE_FREE, "Cheaper than the usual settings, and as right", say, user);
     say_list(report, COST_USE_NONE, "Buy nothing here (neither cheaper nor more right)", say, user);
     say_break_even(report, say, user);
-    for (uint32_t i = 0; i < report->absent_count; ++i)
-        text_add(list, sizeof list, "%s%s", i ? ", " : "", report->absent[i].name);
-    if (list[0])
-        say_it(say, user, "Not here: %s.", list);
+    say_absent(report, say, user);
 }
 
 /* ---- Text and Markdown ---- */
@@ -445,6 +462,8 @@ static void put_csv_row(const struct cost *cost, const struct cost_row *row, FIL
     put_number(to, true, ratio->low);
     put_number(to, true, ratio->high);
     put_count(to, true, row->price.rounds);
+    put_count(to, true, row->price.width);
+    put_count(to, true, row->price.height);
     fprintf(to, ",%d", row->price.verdict);
     put_number(to, row->build_ms >= 0.0, row->build_ms);
     put_number(to, true, error->rmse);
@@ -469,7 +488,8 @@ void cost_write_csv(FILE *to, const void *user)
                                        "false_hits", "other_ids", "non_finite", "ulp_median",
                                        "ulp_999",    "ulp_max",   "ms"};
     fputs("scene,device,driver,knob,setting,option,may_change,clock,wall_ms,cpu_ms,device_ms,ratio,"
-          "ratio_low,ratio_high,rounds,verdict,build_ms,rmse,relative_mse,largest,over_1_255,flip,"
+          "ratio_low,ratio_high,rounds,width,height,verdict,build_ms,rmse,relative_mse,largest,"
+          "over_1_255,flip,"
           "non_finite,alone_rmse,pixels_changed,ids_changed,best",
           to);
     for (uint32_t set = 0; set < COST_SETS; ++set)
