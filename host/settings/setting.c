@@ -88,6 +88,8 @@ static bool read_number(const struct setting *setting, const char *text, double 
 {
     char *end;
     double value = strtod(text, &end);
+    if (end != text && *end == '/' && isdigit((unsigned char)end[1]))
+        value /= strtod(end + 1, &end);
     if (end == text || *end || !(value >= setting->min && value <= setting->max))
         return setting_refuse(why, " `%s`: a number from %g to %g is needed", text, setting->min,
                               setting->max);

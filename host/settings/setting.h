@@ -15,7 +15,7 @@ enum setting_kind {
     SETTING_CHOICE,  /* an enumeration or uint32_t: one of the words of `values` */
     SETTING_EITHER,  /* bool: one of the two words of `values` */
     SETTING_COUNT,   /* uint32_t: min to max */
-    SETTING_NUMBER,  /* double: min to max */
+    SETTING_NUMBER,  /* double: min to max; N/M is read too */
     SETTING_BYTES,   /* uint64_t: more than 0; a whole number, optionally with K, M or G behind
                         it */
     SETTING_SIZE,    /* uint32_t[2]: WxH */

@@ -171,6 +171,18 @@ TEST(each_kind_of_text_that_is_none_is_refused)
     }
 }
 
+TEST(a_number_may_be_a_fraction)
+{
+    static const char *const none[] = {"1/0", "1/", "/64", "1/2/3", "1/-2", "1/ 2", "3/2"};
+    const struct setting *bailout = settings_row("bailout");
+    struct settings settings = settings_usual();
+    char why[SETTING_WHY_BYTES];
+    assert_true(settings_read(bailout, "1/64", &settings, why));
+    assert_true(settings.picture.bailout == 0.015625);
+    for (size_t i = 0; i < sizeof none / sizeof *none; ++i)
+        assert_false(settings_read(bailout, none[i], &settings, why));
+}
+
 TEST(limits_of_adaptive_samples_are_powers_of_4)
 {
     static const char *const texts[] = {"adaptive:0.05,1,4",   "adaptive:0.05,1,16",
