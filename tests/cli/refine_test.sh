@@ -74,13 +74,14 @@ if part 1 2; then
     check "and of its rays" grep -q "[0-9] rays more, for this estimate alone" stdout
 fi
 
-for value in x "" 0 -1 nan inf 1e7 5s ms 1msx 0ms 1e10ms; do
+for value in x "" 0 -1 nan inf 1e7 200 1.5 5s ms 1msx 0ms 1e10ms; do
     refuse 2 "\`$value\`" "--refine" render $BALLS -o no.png --refine "$value"
 done
 for other in "--budget-ms 10" "--max-error 0.1"; do
     refuse 2 "and $other" "--refine and ${other% *}: one of them" render $BALLS -o no.png \
         --refine 0.1 $other
 done
+refuse 2 "milliseconds without their unit" "a time such as 500ms" render $BALLS -o no.png --refine 200
 refuse 2 "and --aa" "--refine chooses --aa" render $BALLS -o no.png --refine 0.1 --aa 4
 refuse 2 "and --view" "one picture of colours" render $BALLS -o no.png --refine 0.1 --view visits
 refuse 2 "and --frames" "one picture of colours" render $BALLS -o no.#.png --refine 0.1 --frames 0-1

@@ -52,6 +52,8 @@ printf 'xxx' >"$OUT/short"
 cat "$R" "$OUT/short" >"$OUT/cut"
 refuse 2 "a ray cut short" "cut: 99 bytes .*at byte 96" \
     trace "$CUBE" --input "$OUT/cut" -o "$OUT/files/hits"
+refuse 2 "a device for the CPU" "--on cpu takes no device" trace "$CUBE" --input "$R" -o "$OUT/files/hits" --on cpu \
+    --device 0
 refuse 2 "missing rays" "missing: cannot read" \
     trace "$CUBE" --input "$OUT/missing" -o "$OUT/files/hits"
 ln -s "$R" "$OUT/link"

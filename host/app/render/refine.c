@@ -7,7 +7,7 @@
 #include "app/arguments.h"
 #include "app/render/render_command.h"
 
-static const double ERROR_MIN = 1e-9, ERROR_MAX = 1e6, LIMIT_MIN_MS = 1e-3, LIMIT_MAX_MS = 1e9;
+static const double ERROR_MIN = 1e-9, ERROR_MAX = 1.0, LIMIT_MIN_MS = 1e-3, LIMIT_MAX_MS = 1e9;
 
 /* ---- Options ---- */
 
@@ -31,7 +31,8 @@ bool refine_read(const struct setting *setting, const char *value, void *request
     double min = is_time ? LIMIT_MIN_MS : ERROR_MIN, max = is_time ? LIMIT_MAX_MS : ERROR_MAX;
     if (!(number >= min && number <= max))
         return setting_refuse(why, " `%s`: %s from %g to %g%s is needed", value,
-                              is_time ? "a time" : "an error", min, max, is_time ? " ms" : "");
+                              is_time ? "a time" : "an error", min, max,
+                              is_time ? " ms" : ", or a time such as 500ms,");
     *(is_time ? &goal->limit_ms : &goal->error) = number;
     return true;
 }

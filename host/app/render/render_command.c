@@ -562,6 +562,8 @@ static bool check_choice(struct cli_reader *reader, const struct settings *setti
     if (request->thumbnail && other)
         return cli_misuse(reader, "--thumbnail is for one picture of colours");
     const char *chosen = render_asks(settings, request, "--budget-ms", "--max-error");
+    if (request->fresh && !chosen)
+        return cli_misuse(reader, "--fresh goes with --budget-ms or --max-error");
     return !request->frames.given || !chosen ||
            cli_misuse(reader, "%s is for one picture of colours", chosen);
 }

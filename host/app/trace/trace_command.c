@@ -166,12 +166,16 @@ static int work(struct job *job, struct trace *trace)
     return status;
 }
 
-static bool check_request(struct cli_reader *reader, const struct trace *trace)
+static bool check_request(struct cli_reader *reader, const struct job *job,
+                          const struct trace *trace)
 {
     if (!trace->rays_path)
         return cli_misuse(reader, "--input FILE is missing");
     if (!trace->output)
         return cli_misuse(reader, "-o FILE is missing: where should the hits go?");
+    if (trace->on != WHIT_TRACE_DEVICE && settings_given(&job->settings, "device"))
+        return cli_misuse(reader, "--device: --on %s takes no device",
+                          value_word(values_on, (int)trace->on));
     const struct cli_file files[] = {{"SCENE", reader->positional, false},
                                      {"--input", trace->rays_path, false},
                                      {"-o", trace->output, true}};
@@ -193,7 +197,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     struct trace trace = {.on = WHIT_TRACE_DEVICE};
     job_init(&job, command);
     cli_reader_init(&reader, command, argc, argv);
-    if (!job_read(&job, &reader, &trace, false) || !check_request(&reader, &trace))
+    if (!job_read(&job, &reader, &trace, false) || !check_request(&reader, &job, &trace))
         return reader.status;
     job_start(&job);
     int status = work(&job, &trace);
