@@ -155,6 +155,13 @@ if part 1 2; then
     expect 0 "kernels that take that time" render $enough
     unset WHIT_TEST_WRONG
     check "are no part of it" test "$(grep -c "it will take" "$OUT/stderr")" -eq 0
+    # A choice whose tries took too long is tried again.
+    export WHIT_TEST_WRONG=noisy
+    expect 0 "a time that slow tries exceed" render $tiny --budget-ms 160
+    check "says so" grep -q "it is likely to take more than 160 ms" "$OUT/stderr"
+    unset WHIT_TEST_WRONG
+    expect 0 "the next run" render $tiny --budget-ms 160
+    check "tries again" grep -q "; predicted: 135.0 ms" "$OUT/stderr"
     expect 0 "an error that one sample has" render $tiny --max-error 0.9
     check "is not measured again" test "$(grep -c "measuring" "$OUT/stderr")" -eq 0
     check "takes less" test "$(grep -c "chosen: --aa" "$OUT/stderr")" -eq 0
@@ -172,6 +179,7 @@ if part 1 2; then
     done
     refuse 1 "no time at all" "no setting takes" render $tiny --budget-ms 0.001 --quiet
     refuse 2 "chosen and given" "chooses --aa" render $tiny --budget-ms 10 --aa 4
+    refuse 2 "figures of no wish" "--fresh goes with --budget-ms" render $tiny --fresh
     refuse 2 "two wishes" "one of them" render $tiny --budget-ms 10 --max-error 1
 fi
 

@@ -40,16 +40,23 @@ void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report)
 const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, double budget_ms)
 {
     for (uint32_t i = 0; i < kept->choice_count; ++i) {
-        if (kept->choices[i].budget_ms == budget_ms)
-            return &kept->choices[i];
+        const struct cost_kept_choice *choice = &kept->choices[i];
+        if (choice->budget_ms == budget_ms && choice->tried_ms <= budget_ms)
+            return choice;
     }
     return NULL;
 }
 
 void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice)
 {
-    if (kept->choice_count == COST_KEPT_CHOICES) /* drops the oldest */
-        memmove(kept->choices, kept->choices + 1, --kept->choice_count * sizeof *kept->choices);
+    uint32_t drop = 0; /* the one for the same budget, or the oldest */
+    while (drop < kept->choice_count && kept->choices[drop].budget_ms != choice->budget_ms)
+        ++drop;
+    if (drop == COST_KEPT_CHOICES)
+        drop = 0;
+    if (drop < kept->choice_count)
+        memmove(kept->choices + drop, kept->choices + drop + 1,
+                (--kept->choice_count - drop) * sizeof *kept->choices);
     kept->choices[kept->choice_count++] = *choice;
 }
 

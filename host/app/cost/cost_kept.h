@@ -22,8 +22,9 @@ bool cost_kept_load(const struct cost_place *place, struct cost_kept *kept);
 /* Reports that are not complete are not kept. */
 void cost_kept_save(const struct cost_kept *kept);
 void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report);
-/* The choice for this budget, or NULL. */
+/* The choice for this budget whose tries took no longer, or NULL: the device may be faster now. */
 const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, double budget_ms);
+/* Replaces the choice for the same budget, or else, where there is no room, the oldest. */
 void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice);
 /* view_params.load_figures and save_figures, which use the same record. */
 bool cost_kept_load_figures(const struct cost_place *place, struct cost_kept_figures *figures);
