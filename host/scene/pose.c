@@ -17,12 +17,12 @@ static uint32_t width_of(const struct scene_channel *channel)
 }
 
 /* Index of the last key at or before `time_s`; the channel has keys on both sides of it. */
-static uint32_t key_before(const struct scene_channel *channel, double time_s)
+static uint32_t key_before(const struct scene_channel *channel, float time_s)
 {
     uint32_t low = 0, high = channel->key_count - 1;
     while (high - low > 1) {
         uint32_t middle = low + (high - low) / 2;
-        if ((double)channel->times_s[middle] <= time_s)
+        if (channel->times_s[middle] <= time_s)
             low = middle;
         else
             high = middle;
@@ -91,7 +91,7 @@ static void interpolate(const struct scene_channel *channel, uint32_t key, doubl
     uint32_t width = width_of(channel);
     double start = (double)channel->times_s[key];
     double dt = (double)channel->times_s[key + 1] - start;
-    double s = dt > 0.0 ? (time_s - start) / dt : 0.0;
+    double s = dt > 0.0 ? fmin(fmax((time_s - start) / dt, 0.0), 1.0) : 0.0;
     double a[4], b[4];
     copy_key(channel, key, a);
     copy_key(channel, key + 1, b);
@@ -111,12 +111,15 @@ static void interpolate(const struct scene_channel *channel, uint32_t key, doubl
 static void evaluate(const struct scene_channel *channel, double time_s, double out[4])
 {
     uint32_t last = channel->key_count - 1;
-    if (time_s >= (double)channel->times_s[last])
+    /* Times of keys are floats: a time that is one of them in double, such as 0.1, has to be the
+       same float, or 0.1f comes later. */
+    float key_time_s = (float)time_s;
+    if (key_time_s >= channel->times_s[last])
         copy_key(channel, last, out);
-    else if (!(time_s > (double)channel->times_s[0]))
+    else if (!(key_time_s > channel->times_s[0]))
         copy_key(channel, 0, out);
     else
-        interpolate(channel, key_before(channel, time_s), time_s, out);
+        interpolate(channel, key_before(channel, key_time_s), time_s, out);
     if (channel->path == SCENE_PATH_ROTATION)
         normalize(out);
 }

@@ -77,6 +77,22 @@ TEST(steps_hold_until_the_next_key)
     assert_near(matrix_at(scene, 2.0).m[3], 13.0);
 }
 
+/* Times of keys are floats, 0.1f more than 0.1: the time of a picture is rounded as they are. */
+TEST(a_key_begins_at_its_time_in_double)
+{
+    const double fps[] = {10.0, 24.0, 30.0};
+    for (uint32_t f = 0; f < 3; ++f) {
+        float times[40], values[120] = {0};
+        for (uint32_t i = 0; i < 40; ++i) {
+            times[i] = (float)(i / fps[f]);
+            values[3 * i] = (float)i;
+        }
+        own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_STEP, times, 40, values, 120);
+        for (uint32_t i = 0; i < 40; ++i)
+            assert_near(matrix_at(scene, i / fps[f]).m[3], 10.0 + i);
+    }
+}
+
 /* Tangents are per second: with 2 s between keys they count double. Compares with the polynomial
    p(s) from value 0 to 1 with the slopes 3 and 5. */
 TEST(cubic_is_hermite)
