@@ -10,6 +10,8 @@
 /* An animated scale of zero (things that pop up or vanish) is raised to this, so that the matrix
    has an inverse; nothing that small is seen. */
 #define SMALLEST_ANIMATED_SCALE 1e-6
+/* The scale of an instance that nested scales of about zero have made too small for floats. */
+#define HIDDEN_SCALE            1e-12
 
 static uint32_t width_of(const struct scene_channel *channel)
 {
@@ -330,16 +332,28 @@ void scene_pose_objects(const struct scene *scene, const struct scene_pose *pose
 /* Matrices and their inverses become floats on the device. */
 #define LARGEST_ENTRY 1e30
 
+static bool is_in_range(const struct affine *matrix)
+{
+    bool in_range = affine_is_finite(matrix);
+    for (int i = 0; i < 12; ++i)
+        in_range = in_range && fabs(matrix->m[i]) <= LARGEST_ENTRY;
+    return in_range;
+}
+
 bool scene_can_place(const struct affine *matrix)
 {
     struct affine inverse;
-    if (!affine_is_finite(matrix) || !affine_invert(matrix, &inverse))
-        return false;
+    return is_in_range(matrix) && affine_invert(matrix, &inverse) && is_in_range(&inverse);
+}
+
+/* Places an instance that is flat or a point at this time, so that it has no inverse in range, as a
+   point that is too small to be seen. */
+static void hide(struct affine *matrix)
+{
     for (int i = 0; i < 12; ++i) {
-        if (fabs(matrix->m[i]) > LARGEST_ENTRY || fabs(inverse.m[i]) > LARGEST_ENTRY)
-            return false;
+        if (i % 4 != 3)
+            matrix->m[i] = i % 5 == 0 ? HIDDEN_SCALE : 0.0;
     }
-    return true;
 }
 
 static whit_result pose_instances(const struct scene *scene, const struct affine *nodes,
@@ -348,9 +362,10 @@ static whit_result pose_instances(const struct scene *scene, const struct affine
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         const struct scene_instance *instance = &scene->instances[i];
         struct affine matrix = instance_matrix(instance, nodes);
+        if (is_in_range(&matrix) && !scene_can_place(&matrix))
+            hide(&matrix);
         if (!scene_can_place(&matrix)) {
-            log_error(&scene->log,
-                      "%s: instance %u `%s` has a transform without an inverse in range at %g s",
+            log_error(&scene->log, "%s: instance %u `%s` is too large or too far away at %g s",
                       scene->name, i, text_token(instance->name).text, pose->time_s);
             return WHIT_ERROR_INPUT;
         }

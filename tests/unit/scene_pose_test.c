@@ -153,6 +153,24 @@ TEST(vanishing_scale_keeps_an_inverse)
     assert_near(matrix_at(scene, 0.5).m[0], 0.5);
 }
 
+/* Six nested scales of zero, each raised to 1e-6, have no inverse in floats. */
+TEST(nested_scales_of_zero_hide_an_instance)
+{
+    own_scene *scene = scene_begin(NULL, "test");
+    uint32_t node = SCENE_NONE;
+    for (uint32_t i = 0; i < 6; ++i) {
+        node = scene_put_node(scene, node, i == 0 ? 7 : 0, 0, 0);
+        scene_put_channel(scene, node, SCENE_PATH_SCALE, 2, (float[]){0, 1},
+                          (float[]){0, 0, 0, 1, 1, 1});
+    }
+    scene_put(scene, mesh_box(2, 2, 2), &(struct put){.node = &node});
+    scene_ready(scene);
+    struct affine hidden = matrix_at(scene, 0.0);
+    assert_near(hidden.m[3], 7.0);
+    assert_true(hidden.m[0] > 0.0 && hidden.m[0] < 1e-9 && scene_can_place(&hidden));
+    assert_near(matrix_at(scene, 1.0).m[0], 1.0);
+}
+
 TEST(unordered_times_are_dropped)
 {
     const float times[] = {0, 0}, values[] = {5, 0, 0, 6, 0, 0};
