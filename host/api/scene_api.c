@@ -98,6 +98,7 @@ void whit_scene_get_info(const whit_scene *handle, whit_scene_info *info)
         .file_bytes = scene->file_bytes,
         .hash = scene->hash,
         .channel_count = scene->channel_count,
+        .time_begin_s = (double)scene->time_begin_s,
         .time_end_s = (double)scene->time_end_s,
         .one_tree = handle->one_tree,
         .environment = scene->environment.kind,

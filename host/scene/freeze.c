@@ -70,7 +70,6 @@ static void check_channels(struct scene *scene)
     for (uint32_t i = 0; i < scene->channel_count; ++i) {
         struct scene_channel *channel = &scene->channels[i];
         if (usable_channel(scene, channel)) {
-            scene->time_end_s = fmaxf(scene->time_end_s, channel->times_s[channel->key_count - 1]);
             scene->channels[kept++] = *channel;
             continue;
         }
@@ -505,8 +504,19 @@ whit_result scene_freeze(struct scene *scene)
     return result == WHIT_OK ? freeze_complete(scene) : no_memory(scene, result);
 }
 
+static void find_times(struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->channel_count; ++i) {
+        const struct scene_channel *channel = &scene->channels[i];
+        float begin_s = channel->times_s[0], end_s = channel->times_s[channel->key_count - 1];
+        scene->time_begin_s = i ? fminf(scene->time_begin_s, begin_s) : begin_s;
+        scene->time_end_s = i ? fmaxf(scene->time_end_s, end_s) : end_s;
+    }
+}
+
 whit_result freeze_complete(struct scene *scene)
 {
+    find_times(scene);
     for (uint32_t i = 0; i < scene->light_count; ++i)
         memcpy(scene->lights[i].stated, scene->lights[i].color, sizeof scene->lights[i].stated);
     whit_result result = freeze_add_defaults(scene);

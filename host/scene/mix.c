@@ -1,6 +1,5 @@
 #include "scene/mix.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -125,8 +124,6 @@ static bool add_channel(struct mix *mix, const struct scene_side *side, uint32_t
 {
     struct scene_channel channel = side->scene->channels[index];
     size_t values = (size_t)channel.key_count * scene_channel_width(&channel);
-    float end_s = channel.times_s[channel.key_count - 1];
-    mix->out->time_end_s = fmaxf(mix->out->time_end_s, end_s);
     channel.node = place_of(mix, side, SCENE_NAMES_NODE, channel.node);
     channel.times_s = copy_of(mix, channel.times_s, channel.key_count, sizeof(float));
     channel.values = copy_of(mix, channel.values, values, sizeof(float));

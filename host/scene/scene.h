@@ -276,7 +276,7 @@ struct scene {
     float contact; /* surfaces of two media that are at most this far apart, in world units, count
                       as one; 0: only surfaces that touch within rounding do */
     uint64_t triangle_total, sphere_total; /* over instances; set by scene_freeze */
-    float time_end_s;                      /* last key of any channel; 0: nothing moves */
+    float time_begin_s, time_end_s;        /* first, last key; both 0: nothing moves */
     uint32_t textures_missing;             /* of texture_count: magenta in place of a picture */
     uint64_t file_bytes;                   /* of all files read */
     uint64_t memory_limit, memory_taken;   /* see afford.h; 0: no limit */

@@ -8,7 +8,9 @@
 #include "scene/pose.h"
 
 #define TRIANGLES_MAX 400000u
-#define MOMENTS       17 /* times of an animation at which the view is to show everything */
+#define EVEN          17  /* even steps of an animation at which the view is to show everything */
+#define KEYS_MAX      240 /* times of keys at which it is to, too */
+#define KEYS_SORTED   (1u << 18)
 #define BINS          1024
 #define TAIL          0.025 /* share of triangles that a core leaves out at either end of an axis */
 #define PART          0.25  /* largest size of a part, in diagonals of the scene */
@@ -83,11 +85,11 @@ static void measure(const double lo[3], const double hi[3], struct soup *soup)
         soup->half[i] /= soup->radius;
 }
 
-/* Poses of the scene at even steps of its animation, the first borrowed from the caller; lo, hi:
-   bounds over all of them. */
+/* Poses of the scene at even steps of its animation, the first borrowed from the caller, then at
+   times of keys; lo, hi: bounds over all of them. */
 struct moments {
-    struct scene_pose poses[MOMENTS];
-    uint32_t count;
+    struct scene_pose poses[EVEN + KEYS_MAX];
+    uint32_t count, even; /* even: of these are at even steps */
     double lo[3], hi[3];
 };
 
@@ -97,28 +99,104 @@ static void moments_finish(struct moments *moments)
         scene_pose_finish(&moments->poses[i]);
 }
 
-static whit_result moments_init(const struct scene *scene, const struct scene_pose *now,
-                                struct moments *out)
+/* Adds the scene at a time; with `growing` only if its bounds reach out of those so far. A time at
+   which an instance cannot be placed is left out, as it cannot be drawn. */
+static whit_result add_moment(const struct scene *scene, double time_s, bool growing,
+                              struct moments *out)
 {
-    bool moves = scene->time_end_s > 0.0f && scene->instance_count <= MOVING_MAX;
+    struct scene silent = *scene;
+    struct scene_pose *pose = &out->poses[out->count];
+    bool grows = false;
+    silent.log = (whit_log){0};
+    whit_result result = scene_pose_init(&silent, time_s, pose);
+    if (result != WHIT_OK)
+        return result == WHIT_ERROR_INPUT ? WHIT_OK : result;
+    for (int k = 0; k < 3; ++k)
+        grows |= pose->lo[k] < out->lo[k] || pose->hi[k] > out->hi[k];
+    if (growing && !grows) {
+        scene_pose_finish(pose);
+        return WHIT_OK;
+    }
+    for (int k = 0; k < 3; ++k) {
+        out->lo[k] = fmin(out->lo[k], pose->lo[k]);
+        out->hi[k] = fmax(out->hi[k], pose->hi[k]);
+    }
+    ++out->count;
+    return WHIT_OK;
+}
+
+static int compare_times(const void *a, const void *b)
+{
+    float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* The times of keys of all channels, each once, in order: of more than KEYS_SORTED keys every
+   second, third, ... of each channel and its last. *count: how many. NULL: memory ran out. */
+static float *key_times(const struct scene *scene, uint32_t *count)
+{
+    uint64_t all = 0, room = 0, sorted = 0;
+    for (uint32_t i = 0; i < scene->channel_count; ++i)
+        all += scene->channels[i].key_count;
+    uint64_t step = all / KEYS_SORTED + 1;
+    room = all / step + 2 * (uint64_t)scene->channel_count;
+    float *times = array_alloc((size_t)room, sizeof *times);
+    *count = 0;
+    if (!times)
+        return NULL;
+    for (uint32_t i = 0; i < scene->channel_count; ++i) {
+        const struct scene_channel *channel = &scene->channels[i];
+        for (uint64_t key = 0; key + 1 < channel->key_count; key += step)
+            times[sorted++] = channel->times_s[key];
+        times[sorted++] = channel->times_s[channel->key_count - 1];
+    }
+    qsort(times, (size_t)sorted, sizeof *times, compare_times);
+    for (uint64_t i = 0; i < sorted; ++i) {
+        if (i == 0 || times[i] != times[*count - 1])
+            times[(*count)++] = times[i];
+    }
+    return times;
+}
+
+/* Adds moments at times of keys, evenly thinned to KEYS_MAX and to MOVING_MAX. */
+static whit_result add_keys(const struct scene *scene, uint64_t triangles, struct moments *out)
+{
+    uint32_t count, most = MOVING_MAX * EVEN / scene->instance_count - out->count;
+    float *times = key_times(scene, &count);
+    whit_result result = times ? WHIT_OK : WHIT_ERROR_MEMORY;
+    most = most < KEYS_MAX ? most : KEYS_MAX;
+    most = most < count ? most : count;
+    bool growing = triangles * (out->count + most) > TRIANGLES_MAX;
+    for (uint32_t i = 0; result == WHIT_OK && i < most; ++i) {
+        uint64_t at = most > 1 ? (uint64_t)i * (count - 1) / (most - 1) : 0;
+        result = add_moment(scene, (double)times[at], growing, out);
+    }
+    free(times);
+    return result;
+}
+
+/* `triangles`: how many all instances have. Where triangles at all moments would be too many, boxes
+   stand for those at keys, which would widen the view: then only keys that widen the bounds
+   count. */
+static whit_result moments_init(const struct scene *scene, const struct scene_pose *now,
+                                uint64_t triangles, struct moments *out)
+{
+    double begin_s = fmin((double)scene->time_begin_s, 0.0);
+    double length_s = fmax((double)scene->time_end_s, 0.0) - begin_s;
+    bool moves = length_s > 0.0 && scene->instance_count > 0 && scene->instance_count <= MOVING_MAX;
+    whit_result result = WHIT_OK;
     out->poses[0] = *now;
     out->count = 1;
     memcpy(out->lo, now->lo, sizeof out->lo);
     memcpy(out->hi, now->hi, sizeof out->hi);
-    for (uint32_t i = 1; moves && i < MOMENTS; ++i) {
-        double time_s = (double)scene->time_end_s * i / (MOMENTS - 1);
-        whit_result result = scene_pose_init(scene, time_s, &out->poses[i]);
-        if (result != WHIT_OK) {
-            moments_finish(out);
-            return result;
-        }
-        ++out->count;
-        for (int k = 0; k < 3; ++k) {
-            out->lo[k] = fmin(out->lo[k], out->poses[i].lo[k]);
-            out->hi[k] = fmax(out->hi[k], out->poses[i].hi[k]);
-        }
-    }
-    return WHIT_OK;
+    for (uint32_t i = 1; moves && result == WHIT_OK && i < EVEN; ++i)
+        result = add_moment(scene, begin_s + length_s * i / (EVEN - 1), false, out);
+    out->even = out->count;
+    if (moves && result == WHIT_OK)
+        result = add_keys(scene, triangles, out);
+    if (result != WHIT_OK)
+        moments_finish(out);
+    return result;
 }
 
 /* The cell, from 0, of a coordinate in -SOUP_CELLS/2 .. SOUP_CELLS/2; NaN is in cell 0. */
@@ -294,18 +372,21 @@ whit_result soup_init(const struct scene *scene, const struct scene_pose *pose, 
 {
     struct moments moments;
     uint64_t total = 0;
-    *soup = (struct soup){0};
-    whit_result result = moments_init(scene, pose, &moments);
-    if (result != WHIT_OK)
-        return result;
-    measure(moments.lo, moments.hi, soup);
     bool spheres = false;
+    *soup = (struct soup){0};
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         total += scene->meshes[scene->instances[i].mesh].triangle_count;
         spheres |= scene->meshes[scene->instances[i].mesh].sphere_count > 0;
     }
+    whit_result result = moments_init(scene, pose, total, &moments);
+    if (result != WHIT_OK)
+        return result;
+    measure(moments.lo, moments.hi, soup);
     soup->whole = total <= TRIANGLES_MAX && !spheres;
-    uint32_t exact = !soup->whole ? 0 : total * moments.count <= TRIANGLES_MAX ? moments.count : 1;
+    uint32_t exact = !soup->whole                             ? 0
+                     : total * moments.count <= TRIANGLES_MAX ? moments.count
+                     : total * moments.even <= TRIANGLES_MAX  ? moments.even
+                                                              : 1;
     uint64_t room = total * exact + 3ull * moments.count * scene->instance_count;
     soup->corners = array_alloc((size_t)room, 9 * sizeof *soup->corners);
     soup->pictured = array_alloc((size_t)room, sizeof *soup->pictured);

@@ -20,9 +20,9 @@ struct soup {
     uint32_t outline_count;
 };
 
-/* Collects the triangles of `scene` at `pose`, and those at later times of its animation: with many
-   triangles boxes around its instances in their place. With very many triangles, or with spheres,
-   only boxes. WHIT_ERROR_MEMORY. */
+/* Collects the triangles of `scene` at `pose`, and those at other times of its animation (even
+   steps and keys): with many triangles boxes around its instances in their place. With very many
+   triangles, or with spheres, only boxes. WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result soup_init(const struct scene *scene, const struct scene_pose *pose,
                                  struct soup *soup);
 /* The same triangles in the space of the small part of the scene that nearly all of them are in,

@@ -92,8 +92,8 @@ typedef struct whit_scene_info {
     uint64_t sphere_count;        /* over all instances */
     uint64_t file_bytes;          /* of all files read */
     uint64_t hash;
-    uint32_t channel_count; /* animated properties of nodes */
-    double time_end_s;      /* 0: nothing moves */
+    uint32_t channel_count;          /* animated properties of nodes */
+    double time_begin_s, time_end_s; /* first and last key; both 0: nothing moves */
     bool one_tree; /* whether WHIT_INSTANCES_AUTO makes a single tree. It does where no mesh but a
                       ball is instanced twice, nothing is animated, objects are no farther from the
                       origin than 256 times their longest side, spheres are not rotated, mirrored or

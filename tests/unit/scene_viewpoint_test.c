@@ -256,6 +256,24 @@ TEST(animations_stay_in_the_picture)
     assert_true(fabs(slope[1]) < 0.95);
 }
 
+/* ... also where it is far away only at one key, between even steps, or before the time 0. */
+TEST(animations_stay_in_the_picture_at_keys)
+{
+    const float times[2][4] = {{0, 0.1f, 0.2f, 16}, {-4, -3, -2, -1}};
+    for (uint32_t i = 0; i < 2; ++i) {
+        own_scene *scene = empty_scene();
+        uint32_t flies = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
+        scene_put(scene, walls((const float[]){1, 1, 1}, 0, true), &(struct put){.node = &flies});
+        scene_put_channel(scene, flies, SCENE_PATH_TRANSLATION, 4, times[i],
+                          (float[]){0, 0, 0, 0, 20, 0, 0, 0, 0, 0, 0, 0});
+        double forward[3], slope[2];
+        const struct scene_camera *camera = camera_of(scene, forward);
+        assert_true(reach(camera, forward, (const float[]){1, 21, 1}, slope) > 0.0);
+        assert_true(fabs(slope[1]) < 0.95);
+        assert_true((double)scene->time_end_s == (double)times[i][3]);
+    }
+}
+
 /* A triangle turns once around its corner of 90 degrees. Corners of the box around it would go 1.4
    times as far as its own. */
 TEST(animations_fill_the_picture)

@@ -64,7 +64,7 @@ static bool is_behind(const struct drawing *drawing)
     double eye[3], target[3];
     whit_scene_info scene;
     whit_scene_get_info(drawing->job.scene, &scene);
-    bool moves = scene.time_end_s > 0.0 && drawing->params.time_s != 0.0;
+    bool moves = scene.channel_count > 0 && drawing->params.time_s != 0.0;
     bool turned = drawing->stats.rays_reflected > 0 || drawing->stats.rays_refracted > 0;
     if (moves || turned || scene.objects_lo[0] > scene.objects_hi[0] ||
         !find_camera(drawing, eye, target))

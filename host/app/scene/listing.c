@@ -163,7 +163,10 @@ static void print_summary(const struct job *job, const whit_scene_info *info)
                info->lo[2], info->hi[0], info->hi[1], info->hi[2]);
     else
         puts("  bounds       empty");
-    if (info->channel_count)
+    if (info->channel_count && info->time_begin_s < 0.0)
+        printf("  animation    %u channels, %.4g to %.4g s\n", info->channel_count,
+               info->time_begin_s, info->time_end_s);
+    else if (info->channel_count)
         printf("  animation    %u channels, to %.4g s\n", info->channel_count, info->time_end_s);
     if (info->one_tree)
         puts("  trees        one, in world space (--instances)");

@@ -138,6 +138,7 @@ int listing_print_json(const struct job *job, const whit_scene_info *info)
     document_count(root, "nodes", info->node_count);
     document_count(root, "textures", info->texture_count);
     document_count(root, "channels", info->channel_count);
+    document_number(root, "time_begin_s", info->time_begin_s);
     document_number(root, "time_end_s", info->time_end_s);
     document_flag(root, "one_tree", info->one_tree);
     document_put(root, "bounds", bounds_document(info));
