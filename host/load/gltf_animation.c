@@ -33,57 +33,44 @@ static bool read_target(const struct gltf *gltf, const json_t *channel, const st
     return true;
 }
 
+/* *known: whether there is an interpolation of that name. */
 static bool read_interpolation(const struct gltf *gltf, const json_t *sampler,
-                               const struct gltf_place *at, enum scene_interpolation *out)
+                               const struct gltf_place *at, enum scene_interpolation *out,
+                               bool *known)
 {
     const char *name;
     if (!gltf_string(gltf, sampler, at, "interpolation", &name))
         return false;
-    *out = SCENE_LINEAR;
-    if (!name || strcmp(name, "LINEAR") == 0)
-        return true;
-    *out = strcmp(name, "STEP") == 0 ? SCENE_STEP : SCENE_CUBIC;
-    return *out == SCENE_STEP || strcmp(name, "CUBICSPLINE") == 0 ||
-           gltf_fail(gltf, at, "the interpolation `%s` is unknown", text_token(name).text);
-}
-
-static bool check_times(const struct gltf *gltf, const struct gltf_place *at, const float *times,
-                        uint32_t count)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        if (!(times[i] >= 0 && times[i] < 1e18f))
-            return gltf_fail(gltf, at, "its time of key %u is %g and should be at least 0", i,
-                             (double)times[i]);
-        if (i > 0 && !(times[i] > times[i - 1]))
-            return gltf_fail(gltf, at, "its times do not increase (key %u)", i);
-    }
+    *out = !name || strcmp(name, "LINEAR") == 0 ? SCENE_LINEAR
+           : strcmp(name, "STEP") == 0          ? SCENE_STEP
+                                                : SCENE_CUBIC;
+    *known = *out != SCENE_CUBIC || strcmp(name, "CUBICSPLINE") == 0;
     return true;
 }
 
-/* Reads the sampler's times and values into *out, which owns them, also on failure. */
+/* Reads the sampler's times and values into *out, which owns them, also on failure. scene_freeze
+   checks the times. *usable: the channel can be played as far as it is not about them. */
 static bool read_sampler(const struct gltf *gltf, const json_t *sampler,
                          const struct gltf_place *at, uint32_t components,
-                         struct scene_channel *out)
+                         struct scene_channel *out, bool *usable)
 {
     uint32_t accessors = gltf_count(gltf, "accessors"), input, output, values;
-    if (!read_interpolation(gltf, sampler, at, &out->interpolation) ||
+    if (!read_interpolation(gltf, sampler, at, &out->interpolation, usable) ||
         !gltf_index(gltf, sampler, at, "input", accessors, &input) ||
         !gltf_index(gltf, sampler, at, "output", accessors, &output))
         return false;
     if (input == SCENE_NONE || output == SCENE_NONE)
         return gltf_fail(gltf, at, "has no input or no output");
     if (!gltf_read_floats(gltf, input, 1, &out->times_s, &out->key_count) ||
-        !gltf_read_floats(gltf, output, components, &out->values, &values) ||
-        !check_times(gltf, at, out->times_s, out->key_count))
+        !gltf_read_floats(gltf, output, components, &out->values, &values))
         return false;
-    uint64_t needed = (uint64_t)out->key_count * (out->interpolation == SCENE_CUBIC ? 3 : 1);
-    return values == needed || gltf_fail(gltf, at, "has %u values where %llu are needed", values,
-                                         (unsigned long long)needed);
+    *usable &= values == (uint64_t)out->key_count * (out->interpolation == SCENE_CUBIC ? 3 : 1);
+    return true;
 }
 
 struct played {
     uint8_t *paths; /* of each node of the file: bits of enum scene_path */
-    uint32_t doubled, unplayable;
+    uint32_t doubled, unplayable, unusable;
 };
 
 static whit_result add_channel(struct gltf *gltf, const json_t *object, const json_t *samplers,
@@ -111,10 +98,14 @@ static whit_result add_channel(struct gltf *gltf, const json_t *object, const js
     played->unplayable += fixed;
     if (doubled || fixed)
         return WHIT_OK;
-    if (!read_sampler(gltf, json_array_get(samplers, index), at, target.components, &channel)) {
+    bool usable = false;
+    bool read = read_sampler(gltf, json_array_get(samplers, index), at, target.components, &channel,
+                             &usable);
+    played->unusable += read && !usable;
+    if (!read || !usable) {
         free(channel.times_s);
         free(channel.values);
-        return WHIT_ERROR_INPUT;
+        return read ? WHIT_OK : WHIT_ERROR_INPUT;
     }
     return scene_add_channel(gltf->scene, channel) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
 }
@@ -148,9 +139,13 @@ static void note_unplayed(const struct gltf *gltf, const struct played *played)
                    name, played->unplayable);
     if (played->doubled)
         scene_note(gltf->scene, SCENE_NOTE_WARNING,
-                   "%s: %u animation channels move what an earlier animation moves, they are not "
-                   "played",
+                   "%s: %u animation channels move what an earlier one moves, they are not played",
                    name, played->doubled);
+    if (played->unusable)
+        scene_note(gltf->scene, SCENE_NOTE_WARNING,
+                   "%s: %u animation channels are not played: their interpolation is unknown, or "
+                   "their values are not as many as their times need",
+                   name, played->unusable);
 }
 
 whit_result gltf_add_animations(struct gltf *gltf)
