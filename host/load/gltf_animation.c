@@ -148,14 +148,79 @@ static void note_unplayed(const struct gltf *gltf, const struct played *played)
                    name, played->unusable);
 }
 
+/* Whether an animation moves a node that one before it moves, which is played. */
+static bool is_other_clip(const struct gltf *gltf, const json_t *animation,
+                          const struct played *played)
+{
+    const json_t *channel;
+    size_t i;
+    json_array_foreach(json_object_get(animation, "channels"), i, channel)
+    {
+        const json_t *node = json_object_get(json_object_get(channel, "target"), "node");
+        json_int_t index = json_is_integer(node) ? json_integer_value(node) : -1;
+        if (index >= 0 && index < gltf->node_count && played->paths[index])
+            return true;
+    }
+    return false;
+}
+
+static const char *clip_name(const json_t *animations, uint32_t index)
+{
+    const char *name =
+        json_string_value(json_object_get(json_array_get(animations, index), "name"));
+    return name ? name : "";
+}
+
+/* The animation that is played alone, or first. False: there is none of the name or number that is
+   wanted. */
+static bool find_clip(const struct gltf *gltf, const char *wanted, uint32_t *index)
+{
+    const json_t *animations = json_object_get(gltf->root, "animations");
+    uint32_t count = (uint32_t)json_array_size(animations);
+    char number[16], names[256] = "";
+    *index = 0;
+    for (uint32_t i = 0; wanted && i < 2 * count; i++) { /* names come before numbers */
+        snprintf(number, sizeof number, "%u", *index = i % count);
+        if (strcmp(i < count ? clip_name(animations, i) : number, wanted) == 0)
+            return true;
+        if (i < count)
+            text_add(names, sizeof names, "%s%u `%s`", i ? ", " : "", i,
+                     text_token(clip_name(animations, i)).text);
+    }
+    if (wanted && count)
+        log_error(&gltf->scene->log, "%s: there is no animation `%s`, only %s", gltf->request->path,
+                  text_token(wanted).text, names);
+    return !wanted || !count;
+}
+
+/* Plays the wanted animation alone; else the first one, and of the others those that move nodes
+   which no played one moves. Animations of a file may be clips, of which viewers play one at a
+   time, or the parts that objects have in what happens. */
 whit_result gltf_add_animations(struct gltf *gltf)
 {
+    const whit_load_params *params = gltf->request->params;
+    const char *wanted = params ? params->clip : NULL;
+    const json_t *animations = json_object_get(gltf->root, "animations");
     struct played played = {.paths = array_alloc_zeroed(gltf->node_count, 1)};
     whit_result result = played.paths ? WHIT_OK : WHIT_ERROR_MEMORY;
-    for (uint32_t i = 0; result == WHIT_OK && i < gltf_count(gltf, "animations"); i++)
-        result = add_animation(gltf, i, &played);
+    uint32_t first, others = 0;
+    char names[256] = "";
+    if (result == WHIT_OK && !find_clip(gltf, wanted, &first))
+        result = WHIT_ERROR_INPUT;
+    for (uint32_t i = 0; result == WHIT_OK && i < gltf_count(gltf, "animations"); i++) {
+        bool other = is_other_clip(gltf, json_array_get(animations, i), &played);
+        if (wanted ? i == first : !other)
+            result = add_animation(gltf, i, &played);
+        else
+            text_add(names, sizeof names, "%s`%s`", others++ ? ", " : "",
+                     text_token(clip_name(animations, i)).text);
+    }
     if (result == WHIT_OK)
         note_unplayed(gltf, &played);
+    if (result == WHIT_OK && others)
+        scene_note(gltf->scene, SCENE_NOTE_INFO, "%s: animation `%s` is played; %s %s not",
+                   path_name(gltf->request->path), text_token(clip_name(animations, first)).text,
+                   names, others == 1 ? "is" : "are");
     free(played.paths);
     return result;
 }

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/input.h"
 #include "base/path.h"
+#include "base/text.h"
 #include "load/format.h"
 #include "load/model.h"
 #include "load/up.h"
@@ -177,6 +178,9 @@ static whit_result load_named(const whit_log *log, const char *path, bool piped,
         scene->log = (whit_log){.fn = name_error, .user = &named, .level = log->level};
     if (result == WHIT_OK)
         result = read_into(scene, path, params);
+    if (result == WHIT_OK && params && params->clip && !scene->channel_count)
+        scene_note(scene, SCENE_NOTE_WARNING, "no animation is played, neither `%s` nor another",
+                   text_token(params->clip).text);
     if (result == WHIT_OK && params)
         result = replace_sky(scene, params);
     scene->lights_wanted = params ? params->lights : WHIT_LIGHTS_AUTO;

@@ -142,6 +142,7 @@ whit_load_params settings_load(const struct settings *settings,
                                const char *folders[SETTING_FOLDERS_MAX])
 {
     whit_load_params params = settings->load;
+    params.clip = settings->clip[0] ? settings->clip : NULL;
     params.environment = settings->environment[0] ? settings->environment : NULL;
     params.allowed_folders = folders;
     while (params.allowed_count < SETTING_FOLDERS_MAX &&

@@ -29,6 +29,7 @@ struct settings {
 
     whit_load_params load;                                 /* its pointers are not used: see
                                                               settings_load */
+    char clip[SETTING_TEXT_BYTES];                         /* "": whit_load_params.clip NULL */
     char environment[SETTING_TEXT_BYTES];                  /* "": the file's */
     char allowed[SETTING_FOLDERS_MAX][SETTING_PATH_BYTES]; /* allowed folders; the last is followed
                                                               by "" */

@@ -436,6 +436,11 @@ const struct setting settings_table[] = {
      "--triangles take it as it is unless told",
      AT(CHOICE, load.up), .values = values_up, .commands = IN_SCENES, .change = SETTING_HITS,
      .need = SETTING_NEEDS_SCENE, .title = "up"},
+    {"clip", 0, "NAME|N",
+     "of a glTF with many animations: the one that is played, by name\n"
+     "or number",
+     "the first, and those for other nodes", AT(TEXT, clip), .commands = IN_SCENES,
+     .change = SETTING_HITS, .need = SETTING_NEEDS_SCENE},
     {"light", 0, NULL,
      "what lights the scene: what the file has, and whit's own\n"
      "where that lights nothing; nothing but the file's; no\n"

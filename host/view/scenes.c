@@ -117,7 +117,7 @@ static void open_scene(struct view *view, const char *path)
     if (strcmp(settings->scene, path) == 0)
         settings->reload = ++view->reloads;
     snprintf(settings->scene, sizeof settings->scene, "%s", path);
-    settings->camera[0] = '\0';
+    settings->camera[0] = settings->clip[0] = '\0';
     settings->picture.time_s = 0.0;
     view->clock.playing = false;
     view->camera_known = false;
@@ -179,6 +179,7 @@ bool scenes_refuse(struct view *view)
         return true;
     memcpy(settings->scene, back->scene, sizeof settings->scene);
     memcpy(settings->camera, back->camera, sizeof settings->camera);
+    memcpy(settings->clip, back->clip, sizeof settings->clip);
     settings->picture.time_s = back->picture.time_s;
     view->clock.playing = view->played;
     view->clock.last_ms = view_now_ms(view);

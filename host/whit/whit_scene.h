@@ -33,6 +33,9 @@ typedef enum whit_lights {
 typedef struct whit_load_params {
     whit_up up; /* for models; scene files define it for theirs */
     whit_lights lights;
+    /* The one animation of a glTF that is played, by name or number from 0. NULL: the first, and of
+       the others those for nodes that no played one moves. */
+    const char *clip;
     /* Replaces the file's environment, which rays see that hit nothing: the path of a panorama
        picture, as in scene files (NULL: none), or one sRGB colour (where has_background). */
     const char *environment;

@@ -626,3 +626,38 @@ TEST_IN(negative_times_are_played, fixture_begin, fixture_end)
     assert_int_equal(scene->channel_count, 1);
     assert_float_equal(scene->channels[0].times_s[0], -1, 0);
 }
+
+#define CLIP(name, node, path)                                                                     \
+    "{\"name\":\"" name "\",\"channels\":[{\"sampler\":0,\"target\":{\"node\":" node               \
+    ",\"path\":\"" path "\"}}],\"samplers\":[{\"input\":1,\"output\":2}]}"
+#define CLIPS                                                                                      \
+    CLIP("walk", "0", "translation") "," CLIP("run", "0", "scale") "," CLIP("door", "1", "scale")
+
+/* A pose with the move of one clip and the scale of another is in neither. */
+TEST_IN(one_clip_is_played_for_a_node, fixture_begin, fixture_end)
+{
+    const char *members = "\"nodes\":[{\"mesh\":0},{\"mesh\":0}],\"animations\":[" CLIPS "]";
+    const struct scene *scene = load(members);
+    assert_int_equal(scene->channel_count, 2);
+    assert_int_equal(scene->channels[0].path, SCENE_PATH_TRANSLATION);
+    assert_int_equal(scene->channels[1].node, 1);
+    assert_true(scene_noted(scene, "animation `walk` is played; `run` is not"));
+}
+
+TEST_IN(a_clip_is_chosen_by_name_or_number, fixture_begin, fixture_end)
+{
+    const char *path =
+        write_gltf("\"nodes\":[{\"mesh\":0},{\"mesh\":0}],\"animations\":[" CLIPS "]");
+    const char *const wanted[] = {"run", "1"};
+    whit_load_params params = {0};
+    for (uint32_t i = 0; i < 2; ++i) {
+        params.clip = wanted[i];
+        assert_int_equal(load_model(fixture.scene, path, SCENE_NONE, true, true, &params), WHIT_OK);
+        assert_int_equal(fixture.scene->channel_count, i + 1);
+        assert_int_equal(fixture.scene->channels[i].path, SCENE_PATH_SCALE);
+    }
+    assert_true(scene_noted(fixture.scene, "animation `run` is played; `walk`, `door` are not"));
+    params.clip = "jump";
+    assert_int_equal(load_model(fixture.scene, path, SCENE_NONE, true, true, &params),
+                     WHIT_ERROR_INPUT);
+}

@@ -82,7 +82,7 @@ Camera = _struct("Camera", ("name", c_char_p), ("own", c_bool), ("kind", CameraK
                  ("eye target up", c_double * 3), ("fov_y_degrees height lens_radius focus_distance", c_double))
 Sampling = _struct("Sampling", ("kind", SamplingKind), ("count first count_max", c_uint32), ("contrast", c_double))
 LoadParams = _struct(
-    "LoadParams", ("up", Up), ("lights", Lights), ("environment", c_char_p), ("has_background", c_bool),
+    "LoadParams", ("up", Up), ("lights", Lights), ("clip environment", c_char_p), ("has_background", c_bool),
     ("background", c_uint8 * 3), ("import_limit_s time_limit_s", c_double), ("require_sandbox", c_bool),
     ("memory_limit_bytes", c_uint64), ("texture_limit", c_uint32), ("cancel", c_void_p),
     ("allowed_folders", ctypes.POINTER(c_char_p)), ("allowed_count", c_uint32), ("refused", c_void_p))
