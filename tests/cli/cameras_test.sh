@@ -29,6 +29,10 @@ expect 0 "a recipe" render scene.json --cameras cameras.json -o r.#.png $size -q
 check "stages have times" jq -e 'all(.stages[]; .ms > 0)' "$OUT/stdout"
 expect 0 "of a pinhole draws the view again" render r.0.png -o again.png --yes -q
 expect 0 "the same" compare r.0.png again.png
+for i in 1 2 3; do
+    check "view $i has its camera, and no command for another" \
+        sh -c 'grep -aq "whit:camera" "$1" && ! grep -aqE "whit:command|\"camera\"" "$1"' - r.$i.png
+done
 refuse 2 "another kind" "r.1.png: its camera is one that --camera has no words for" render r.1.png -o again.png --yes
 
 lines() {

@@ -89,11 +89,10 @@ static whit_result save_view(const struct job *job, const struct render_request 
     whit_device_info device;
     whit_device_get_info(job->device, &device);
     bool named = settings_name_camera(&settings, &cameras->all[number]);
-    if (!recipe_init(&recipe, &settings, job->scene, NULL, &device, NULL, request->output))
+    json_t *camera = named ? NULL : camera_document(&cameras->all[number]);
+    if (!recipe_init(&recipe, &settings, job->scene, NULL, &device, NULL, request->output, camera))
         return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
-    if (!named)
-        recipe_add_camera(&recipe, camera_document(&cameras->all[number]));
     if (request->ids)
         result = save_rows(drawn->ids, at * height, height, request->ids, number, &recipe);
     if (result == WHIT_OK && cameras->distances)

@@ -20,12 +20,15 @@ static char *command_line(const struct settings *settings, const char *output)
     return text;
 }
 
-static char *options_line(const struct settings *settings)
+/* Without `has_camera` the options say of no camera, not even that it is the scene's first. */
+static char *options_line(const struct settings *settings, bool has_camera)
 {
     json_t *options = document_object();
     struct settings told = *settings;
     told.paint = PAINT_COLOR; /* recipe_add_view adds the options of heat maps */
     settings_describe(&told, IN_RENDER, options);
+    if (!has_camera)
+        json_object_del(options, "camera");
     return document_line(options);
 }
 
@@ -75,19 +78,22 @@ static void add_functions(struct recipe *recipe, const whit_shader *shader, cons
 
 bool recipe_init(struct recipe *recipe, const struct settings *settings, const whit_scene *scene,
                  const whit_shader *shader, const whit_device_info *device, const whit_stats *stats,
-                 const char *output)
+                 const char *output, json_t *camera)
 {
     whit_scene_info info;
     *recipe = (struct recipe){.count = 0};
     whit_scene_get_info(scene, &info);
     add(recipe, "Software", string_copy("whit " WHIT_VERSION));
-    add(recipe, "whit:command", command_line(settings, output));
+    if (camera)
+        add(recipe, VIEW_CAMERA_KEY, document_line(camera));
+    else
+        add(recipe, "whit:command", command_line(settings, output));
     /* Other programs print the texts of pictures unescaped. */
     add(recipe, "whit:device", string_copy(cli_shown(device->name)));
     add(recipe, "whit:driver", string_copy(cli_shown(device->driver)));
     add(recipe, "whit:scene", string_copy(cli_shown(settings->scene)));
     add(recipe, "whit:scene_hash", string_format("%016" PRIx64, info.hash));
-    add(recipe, "whit:options", options_line(settings));
+    add(recipe, "whit:options", options_line(settings, !camera));
     if (stats)
         add(recipe, "whit:counters", recipe_counters(stats));
     if (settings->shader[0])
@@ -119,11 +125,6 @@ void recipe_add_part(struct recipe *recipe, const struct part *part,
 {
     if (part_is_given(part))
         add(recipe, PART_KEY, document_line(part_document(part, settings)));
-}
-
-void recipe_add_camera(struct recipe *recipe, json_t *camera)
-{
-    add(recipe, VIEW_CAMERA_KEY, document_line(camera));
 }
 
 const char *recipe_text(const whit_text *texts, uint32_t count, const char *key)

@@ -6,10 +6,6 @@
 #include "app/render/part.h"
 #include "app/render/view_image.h"
 
-/* Key in the recipe of a view whose camera cannot be given by --camera: the camera as a line of a
-   file for --cameras. */
-#define VIEW_CAMERA_KEY "whit:camera"
-
 /* The texts that a picture carries about itself: only what decides its pixels, so that the same
    inputs give the same bytes. */
 enum { RECIPE_TEXTS = 11 };
@@ -18,19 +14,21 @@ struct recipe {
     uint32_t count;
 };
 
+/* Key in the recipe of a view whose camera cannot be given by --camera, in place of the command:
+   the camera as a line of a file for --cameras. */
+#define VIEW_CAMERA_KEY "whit:camera"
+
 /* False when memory ran out, with a message. `shader`: NULL without one. `output`: its ending is
-   the format of the picture. */
+   the format of the picture. `camera`: NULL, or what VIEW_CAMERA_KEY holds, which is taken over. */
 bool recipe_init(struct recipe *recipe, const struct settings *settings, const whit_scene *scene,
                  const whit_shader *shader, const whit_device_info *device, const whit_stats *stats,
-                 const char *output);
+                 const char *output, json_t *camera);
 /* Adds view, scale and figures of a picture of costs. */
 void recipe_add_view(struct recipe *recipe, const struct settings *settings,
                      const struct view_figures *figures);
 /* Adds to the recipe which part of a picture was drawn, if it is not all of it. */
 void recipe_add_part(struct recipe *recipe, const struct part *part,
                      const struct settings *settings);
-/* Adds the camera of a view that --camera has no words for; takes over `camera`. */
-void recipe_add_camera(struct recipe *recipe, json_t *camera);
 /* The value of a text; NULL: there is none with this key. */
 const char *recipe_text(const whit_text *texts, uint32_t count, const char *key);
 /* How many rays of each kind there were, as an object. */

@@ -325,7 +325,8 @@ whit_result render_save(const struct job *job, const struct render_request *requ
     if (result != WHIT_OK)
         return result;
     whit_device_get_info(job->device, &device);
-    if (!recipe_init(&recipe, settings, job->scene, job->shader, &device, stats, request->output))
+    if (!recipe_init(&recipe, settings, job->scene, job->shader, &device, stats, request->output,
+                     NULL))
         return WHIT_ERROR_MEMORY;
     recipe_add_part(&recipe, &request->part, settings);
     if (request->ids)

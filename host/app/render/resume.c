@@ -81,7 +81,7 @@ static whit_result find_finished(const struct job *job, const struct render_requ
     const whit_stats stats = {0};
     struct recipe wanted;
     if (!recipe_init(&wanted, &job->settings, job->scene, job->shader, &device, &stats,
-                     single->output))
+                     single->output, NULL))
         return WHIT_ERROR_MEMORY;
     recipe_add_part(&wanted, &single->part, &job->settings);
     *finished = is_finished(job, single->output, &wanted) &&

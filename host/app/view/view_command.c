@@ -108,7 +108,7 @@ static whit_result save_shot(void *user, const struct view_shot *shot, const cha
     struct recipe recipe;
     (void)user;
     if (!recipe_init(&recipe, shot->settings, shot->scene, shot->shader, shot->device, shot->stats,
-                     path))
+                     path, NULL))
         return WHIT_ERROR_MEMORY;
     whit_result result = whit_image_save(shot->color, path, recipe.texts, recipe.count, &cli_log);
     recipe_finish(&recipe);
