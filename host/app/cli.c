@@ -310,6 +310,13 @@ void cli_set_next(const char *command)
     next_command = command;
 }
 
+void cli_say_next(void)
+{
+    if (next_command && !cli_cancel && !cli_time_over()) /* else cli_exit_of has said it */
+        fprintf(stderr, "whit: to go on: %s", next_command);
+    next_command = NULL;
+}
+
 void cli_set_saving(void)
 {
     written_text = saving_text;

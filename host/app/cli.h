@@ -111,6 +111,8 @@ void cli_set_kept(uint32_t done, uint32_t count, const char *what);
 /* For the message of interrupted work, and of a time limit that has passed: the command that
    continues the work, ended by a newline. It is borrowed for good. */
 void cli_set_next(const char *command);
+/* Prints that command, once, after another failure than these. */
+void cli_say_next(void);
 /* Ends the process with EXIT_TIME a little after `seconds`, in case the work does not watch the
    limit itself. */
 void cli_limit_time(double seconds);

@@ -80,6 +80,10 @@ check "says which" grep -q "^whit: error: p.1.pfm: cannot write: Is a directory"
 check "says how many there are" grep -q "1 of 2 frames were written" "$OUT/stderr"
 check "the first is whole" test "$(head -c 2 p.0.pfm)" = PF
 rm -r p.0.pfm p.1.pfm
+mkdir p.1.png
+expect 2 "of two frames with recipes" render "$SCENES/spin.json" --frames 0-1 --size 8x8 -o p.#.png
+check "says how to go on" grep -q "^whit: to go on: whit render .* --frames 0-1 .* --resume$" "$OUT/stderr"
+rm -r p.0.png p.1.png
 
 # Standard output that cannot be written.
 if [ -c /dev/full ]; then

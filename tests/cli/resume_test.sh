@@ -87,6 +87,9 @@ if part 1 2; then
     check "with one renderer each" jq -es "map(.renderers) | max == 1" 1.json 2.json
     check "lines are the frames of one run" same
     sed 's/96x72/0x72/;6q' lines >wrong
+    refuse 2 "standard input" "PARTS.txt -: lines are read from a file" batch - <wrong
+    echo '# nothing' >nothing
+    refuse 2 "no line" "nothing: there is no line in it" batch nothing
     refuse 2 "a wrong line" "wrong:2: --size \`0x72\`" batch wrong
     echo "'$SWARM' -o x.png --time-limit 1" >wrong
     refuse 2 "a limit of a line" "wrong:1: --time-limit is of all lines" batch wrong

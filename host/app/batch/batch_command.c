@@ -228,8 +228,10 @@ static int work(struct batch *batch, const struct settings *own)
     job_start(&clock);
     status = draw(batch);
     cli_progress_finish(&batch->progress.bar);
-    if (status != EXIT_FINE && !cli_cancel && !own->quiet)
+    if (status != EXIT_FINE && !cli_cancel && !own->quiet) {
         cli_note("%u of %u lines were drawn", batch->done, batch->lines.count);
+        cli_say_next();
+    }
     return status == EXIT_FINE && batch->request.json ? print_stats(batch) : status;
 }
 
@@ -244,7 +246,9 @@ static int run(const struct cli_command *command, int argc, char **argv)
     job_init(&job, command);
     cli_reader_init(&reader, command, argc, argv);
     bool read = cli_read(&reader, &batch->request, &job.settings) &&
-                (reader.positional || cli_misuse(&reader, "a file of lines is missing"));
+                (reader.positional || cli_misuse(&reader, "a file of lines is missing")) &&
+                cli_no_dash(&reader, "PARTS.txt", reader.positional,
+                            "lines are read from a file, not from standard input");
     int status = reader.status;
     if (read) {
         bool told = !job.settings.quiet;

@@ -145,6 +145,10 @@ int lines_init(struct lines *lines, struct line *line)
     lines->text = (char *)text;
     if (result == WHIT_OK)
         result = find_places(lines);
+    if (result == WHIT_OK && lines->count == 0) {
+        cli_error("%s: there is no line in it", lines->path);
+        result = WHIT_ERROR_INPUT;
+    }
     if (result != WHIT_OK)
         return cli_exit_of(result);
     for (uint32_t i = 0; i < lines->count; ++i) {

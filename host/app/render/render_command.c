@@ -495,6 +495,7 @@ static void say_written(const struct job *job, const struct render_request *requ
     if (!cli_cancel && !job->settings.quiet)
         cli_note("%u of %u %s were written", sequence->written + sequence->kept, progress->count,
                  request->cameras.file ? "views" : "frames");
+    cli_say_next();
 }
 
 int render_draw(struct job *job, const struct render_request *request, whit_renderer *renderer,
