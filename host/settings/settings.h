@@ -42,7 +42,9 @@ struct settings {
     uint32_t frame;                  /* with `fps`, replaces a time: see settings_check */
     double fps;
 
-    char shader[SETTING_TEXT_BYTES];  /* a file of functions; "": none */
+    char shader[SETTING_TEXT_BYTES];      /* a file of functions; "": none */
+    char shader_said[SETTING_TEXT_BYTES]; /* where `shader` is a picture that is repeated: the
+                                             shader of its recipe, for the new one; else "" */
     char stages[SETTING_TEXT_BYTES];  /* a checkout's shaders/ in place of the built-in stages; "":
                                          the built-in ones */
     char sliders[SETTING_TEXT_BYTES]; /* of the shader: "NAME=VALUE,NAME=VALUE" */

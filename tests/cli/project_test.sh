@@ -24,6 +24,10 @@ for kind in png exr; do
     expect 0 "and from that one" render again.$kind --yes --quiet -o third.$kind
     expect 0 "the same once more" compare a.$kind third.$kind --metric differing --tolerance 0
     check "nothing is said when quiet" test ! -s "$OUT/stderr"
+    for picture in a third; do
+        grep -a -o 'whit render [^"]* -o whit\.\|{"width":[^}]*}' $picture.$kind >$picture.said
+    done
+    check "what the .$kind says of itself is the same" cmp a.said third.said
     mv hidden my
 done
 expect 0 "with a slider of one's own" render a.png --yes --set bright=1.5 --quiet -o other.png
@@ -34,6 +38,9 @@ expect 0 "are the same functions" compare a.exr b.exr --metric differing --toler
 expect 0 "no functions" render scenes/cube.json --size 40x30 --quiet -o plain.png
 expect 0 "repeated without functions" render plain.png --yes --quiet -o plain2.png
 check "the same bytes" cmp plain.png plain2.png
+expect 0 "by another path" render ./scenes/cube.json --size 40x30 --quiet -o plain3.png
+expect 0 "repeated from another folder" render ./plain3.png --yes --quiet -o plain4.png
+check "the path stays as it was" cmp plain3.png plain4.png
 
 sed 's/"intensity": 24/"intensity": 12/' scenes/cube.json >other.json && mv other.json scenes/cube.json
 expect 0 "of another scene" render plain.png --yes -o other.png

@@ -5,6 +5,7 @@
 #include "app/render/recipe.h"
 #include "app/settings_json.h"
 #include "base/array.h"
+#include "base/path.h"
 
 enum { COMMAND_BYTES = 16384 };
 
@@ -76,10 +77,22 @@ static void add_functions(struct recipe *recipe, const whit_shader *shader, cons
     whit_memory_destroy(functions);
 }
 
+/* The settings as a recipe says them: a picture that is repeated gives its functions, but has them
+   from a file. */
+static struct settings said_settings(const struct settings *settings)
+{
+    struct settings said = *settings;
+    bool picture = path_is(said.shader, "png") || path_is(said.shader, "exr");
+    if (said.shader_said[0] && picture)
+        memcpy(said.shader, said.shader_said, sizeof said.shader);
+    return said;
+}
+
 bool recipe_init(struct recipe *recipe, const struct settings *settings, const whit_scene *scene,
                  const whit_shader *shader, const whit_device_info *device, const whit_stats *stats,
                  const char *output, json_t *camera)
 {
+    const struct settings said = said_settings(settings);
     whit_scene_info info;
     *recipe = (struct recipe){.count = 0};
     whit_scene_get_info(scene, &info);
@@ -87,13 +100,13 @@ bool recipe_init(struct recipe *recipe, const struct settings *settings, const w
     if (camera)
         add(recipe, VIEW_CAMERA_KEY, document_line(camera));
     else
-        add(recipe, "whit:command", command_line(settings, output));
+        add(recipe, "whit:command", command_line(&said, output));
     /* Other programs print the texts of pictures unescaped. */
     add(recipe, "whit:device", string_copy(cli_shown(device->name)));
     add(recipe, "whit:driver", string_copy(cli_shown(device->driver)));
     add(recipe, "whit:scene", string_copy(cli_shown(settings->scene)));
     add(recipe, "whit:scene_hash", string_format("%016" PRIx64, info.hash));
-    add(recipe, "whit:options", options_line(settings, !camera));
+    add(recipe, "whit:options", options_line(&said, !camera));
     if (stats)
         add(recipe, "whit:counters", recipe_counters(stats));
     if (settings->shader[0])

@@ -101,7 +101,9 @@ static const char *find_file(const char *picture, char *path, size_t path_bytes)
     const char *why = "out of memory";
     if (is_input(path))
         return "it came by standard input";
-    char *beside = path_beside(picture, path);
+    /* ./ in front of a folder would be in front of it once more in each repetition. */
+    bool below = path_name(picture) != picture && strncmp(path, "./", 2) == 0;
+    char *beside = path_beside(picture, path + (below ? 2 : 0));
     if (beside && roots_init(&roots, picture) == WHIT_OK) {
         errno = 0;
         enum reach reach = is_input(beside) ? REACH_NOT_A_FILE : roots_reach(&roots, beside);
@@ -142,6 +144,7 @@ static bool find_others(const struct recipe_read *recipe, struct settings *setti
                         recipe->picture);
     if (strlen(recipe->picture) >= sizeof settings->shader)
         return CLI_FAIL(false, "%s: the path is too long", recipe->picture);
+    memcpy(settings->shader_said, settings->shader, sizeof settings->shader_said);
     strcpy(settings->shader, recipe->picture);
     return true;
 }
@@ -259,6 +262,8 @@ static bool read_over(struct recipe_read *recipe, struct job *job, struct cli_re
         return false;
     if (!names_scene)
         memcpy(job->settings.scene, scene, sizeof scene);
+    if (strcmp(job->settings.shader, recipe->picture) != 0)
+        job->settings.shader_said[0] = '\0';
     return true;
 }
 
