@@ -35,7 +35,11 @@ bool job_read(struct job *job, struct cli_reader *reader, void *own, bool option
     char why[SETTING_WHY_BYTES];
     if (!cli_read(reader, own, &job->settings) || !take_scene(job, reader, optional))
         return false;
-    return settings_check(&job->settings, why) || cli_misuse(reader, "%s", why);
+    if (!settings_check(&job->settings, why))
+        return cli_misuse(reader, "%s", why);
+    bool other = reader->command->settings & (IN_RENDER | IN_VIEW); /* which have more uses of it */
+    return other || !settings_given(&job->settings, "fps") ||
+           settings_given(&job->settings, "frame") || cli_misuse(reader, "--fps is for --frame");
 }
 
 void job_start(const struct job *job)

@@ -36,6 +36,10 @@ done
 expect 0 "another rate" render "$SWARM" --frames 4-4 --fps 12 -o c.#.pfm --size 64x48 -q
 expect 0 "the same time" render "$SWARM" --frames 8-8 -o d.###.pfm --size 64x48 -q
 check "frame 4 of 12 a second is frame 8 of 24" cmp c.4.pfm d.008.pfm
+expect 0 "past the end" render "$SCENES/spin.json" --frames 95-98 -o e.##.png --size 8x8
+check "says so" grep -q "the animation ends at 4 s: nothing moves in frames 96 to 98" "$OUT/stderr"
+refuse 2 "--fps alone" "--fps is for --frame and --frames" render "$SWARM" --fps 12 -o r.#.png
+refuse 2 "of a scene" "--fps is for --frame" scene "$SWARM" --fps 12
 mkdir "run#1"
 expect 0 "marks in the folder's name" render "$SWARM" --frames 0-0 -o "run#1/x#y##.pfm" --size 8x8 -q
 check "only the last marks are replaced" test -f "run#1/x#y00.pfm"

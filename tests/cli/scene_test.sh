@@ -26,6 +26,8 @@ glass-of-water.json lens.json spotlight.json strands.json whitted.json "
 shows "one of them" "^  trees        one, in world space" scene "$SCENES/lens.json"
 
 T=$OUT/files/triangles
+expect 0 "at another time" scene "$SCENES/spin.json" --time 1
+check "says that it lists another" grep -q "places are listed as they are at 0 s" "$OUT/stderr"
 expect 0 "scene --triangles" scene "$CUBE" --triangles "$T" --quiet
 check "12 records of 44 bytes" test "$(wc -c <"$T")" -eq 528
 ids=$(od -An -v -tu4 -w44 "$T" | awk '{ printf "%s:%s ", $10, $11 }')

@@ -78,6 +78,9 @@ static bool check_marks(struct cli_reader *reader, const struct render_request *
 bool frames_check(struct cli_reader *reader, const struct job *job,
                   const struct render_request *request)
 {
+    if ((!request->frames.given || request->cameras.file) &&
+        settings_given(&job->settings, "fps") && !settings_given(&job->settings, "frame"))
+        return cli_misuse(reader, "--fps is for --frame and --frames");
     if (!request->frames.given)
         return true;
     bool time = settings_given(&job->settings, "time");
@@ -248,6 +251,16 @@ static whit_result take_frames(struct job *job, const struct render_request *req
     return result;
 }
 
+static void note_still(const struct job *job, const struct frames *frames)
+{
+    whit_scene_info scene;
+    whit_scene_get_info(job->scene, &scene);
+    double still = fmax(ceil(scene.time_end_s * job->settings.fps - 1e-6), frames->first);
+    if (still < frames->last && !job->settings.quiet)
+        cli_note("the animation ends at %.4g s: nothing moves in frames %.0f to %u",
+                 scene.time_end_s, still, frames->last);
+}
+
 whit_result frames_render(struct job *job, const struct render_request *request,
                           whit_renderer *renderer, struct frames_progress *progress,
                           struct sequence *sequence)
@@ -256,6 +269,7 @@ whit_result frames_render(struct job *job, const struct render_request *request,
     *sequence = (struct sequence){0};
     if (!left)
         return cli_no_memory();
+    note_still(job, &request->frames);
     whit_renderer_get_stats(renderer, &sequence->stats);
     sequence->stats.compile_ms = 0.0; /* kernels are made for the first frame */
     sequence->stats.render_device_ms = sequence->stats.bailout_bound = 0.0;

@@ -45,6 +45,9 @@ static int work(struct job *job, const struct scene_request *request)
         return receipt_run(job, request->json);
     if (request->kernels)
         return kernels_run(job, request->json);
+    if (job->settings.picture.time_s != 0.0 && !request->triangles)
+        cli_note("places are listed as they are at 0 s: --time is for --triangles, --effects and "
+                 "--kernels");
     whit_scene_get_info(job->scene, &info);
     if (request->json)
         return listing_print_json(job, &info);
