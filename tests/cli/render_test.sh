@@ -50,7 +50,7 @@ expect 0 "all options of a recipe" render "$SCENES/default.json" -o all.png --si
     --instances on --numerics fast
 listed=$(sed -n 's/^| `whit:options` | //p' "$SCENES/../docs/cli.md")
 options=$(grep -a -o '{"width":8,[^}]*}' all.png)
-check "the recipe has twenty-eight keys" test "$(echo "$options" | jq 'keys | length')" -eq 28
+check "the recipe has twenty-nine keys" test "$(echo "$options" | jq 'keys | length')" -eq 29
 for key in $(echo "$options" | jq -r 'keys[]'); do
     check "docs/cli.md names $key" sh -c 'echo "$1" | grep -q "\b$2\b"' - "$listed" "$key"
 done
