@@ -148,6 +148,8 @@ refuse 2 "a part as the picture" "names one of the parts" merge t1.png t2.png t3
 "$WHIT" render "$CUBE" --size 32x32 --tile 2/2 -o p2.pfm -q
 cp p1.pfm keep.pfm && head -c 100 /dev/zero | dd of=p1.pfm bs=1 seek=200 conv=notrunc 2>/dev/null
 refuse 2 "a PFM that its recipe does not know" "not the recipe of p1.pfm as it is" merge p1.pfm p2.pfm -o merged.pfm
+"$PARTS" 100 4 exr grey || echo "no parts"
+refuse 2 "runs of samples of one channel" "p1.exr: colours have 3 channels, not 1" merge p?.exr -o merged.exr
 rm p2.pfm.part && mv keep.pfm p1.pfm
 refuse 2 "a PFM without its recipe" "p2.pfm.part" merge p1.pfm p2.pfm -o merged.pfm
 check "nothing was written" test -z "$(find . -name 'merged*')"

@@ -173,10 +173,14 @@ static whit_result load_part(const struct merge *merge, const struct merge_part 
         return result;
     whit_image_get_info(*out, &info);
     part_rows(&part->place.part, part->place.height, &first, &rows);
-    if (info.width == part->place.width && info.height == rows)
+    bool fits = info.width == part->place.width && info.height == rows;
+    if (fits && (info.integers || info.channels >= 3))
         return job_still_wanted();
-    cli_error("%s: %u x %u pixels, where its part has %u x %u", part->path, info.width, info.height,
-              part->place.width, rows);
+    if (fits)
+        cli_error("%s: colours have 3 channels, not %u", part->path, info.channels);
+    else
+        cli_error("%s: %u x %u pixels, where its part has %u x %u", part->path, info.width,
+                  info.height, part->place.width, rows);
     whit_image_destroy(*out);
     *out = NULL;
     return WHIT_ERROR_INPUT;
@@ -270,12 +274,11 @@ static whit_result merge_tile(const struct merge *merge, uint32_t tile, whit_ima
     if (result != WHIT_OK)
         return result;
     whit_image_get_info(*out, &info);
-    bool colours = !info.integers && info.channels >= 3;
-    if (info.integers != merge->ids || !(colours || info.integers))
+    if (info.integers != merge->ids)
         return CLI_FAIL(WHIT_ERROR_INPUT, "%s: %s, where parts before it hold %s", parts->path,
-                        info.integers ? "hit identities" : "colours or numbers",
+                        info.integers ? "hit identities" : "colours",
                         merge->ids ? "hit identities" : "colours");
-    if (colours && parts->place.part.sets)
+    if (!info.integers && parts->place.part.sets)
         part_scale(1.0f / (float)parts->place.samples, *out);
     return WHIT_OK;
 }
