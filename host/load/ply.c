@@ -1,6 +1,5 @@
 #include "load/ply.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,46 +47,6 @@ static void remove_blank_lines(uint8_t *data, size_t begin, size_t *size_bytes)
     }
     data[out] = 0;
     *size_bytes = out;
-}
-
-/* Reads COUNT of a line "element NAME COUNT", clamped to 2^64 - 1; false for other lines. */
-static bool read_count(const uint8_t *line, size_t bytes, unsigned long long *count)
-{
-    char text[256];
-    snprintf(text, sizeof text, "%.*s", (int)(bytes < sizeof text ? bytes : sizeof text),
-             (const char *)line);
-    return sscanf(text, " element %*s %llu", count) == 1;
-}
-
-whit_result ply_check(const whit_log *log, const char *path, const uint8_t *data, size_t size_bytes)
-{
-    unsigned long long max = 0, count;
-    uint32_t number = 1, max_number = 0;
-    for (size_t at = 0; at < size_bytes; ++number) {
-        size_t bytes = 0;
-        while (at + bytes < size_bytes && data[at + bytes] != '\n' && data[at + bytes] != '\r')
-            ++bytes;
-        const uint8_t *line = data + at;
-        size_t blanks = 0;
-        while (blanks < bytes && (line[blanks] == ' ' || line[blanks] == '\t'))
-            ++blanks;
-        at += bytes + 1;
-        if (line[bytes] == '\r' && at < size_bytes && data[at] == '\n')
-            ++at;
-        if (read_count(line, bytes, &count) && count > max) {
-            max = count;
-            max_number = number;
-        }
-        if (!starts_with(line + blanks, bytes - blanks, "end_header"))
-            continue;
-        if (at > size_bytes || max <= size_bytes - at)
-            return WHIT_OK;
-        log_error(log, "%s:%u: %llu elements, but only %zu bytes behind the header", path,
-                  max_number, max, size_bytes - at);
-        return WHIT_ERROR_INPUT;
-    }
-    log_error(log, "%s:%u: the file ends within its header", path, number);
-    return WHIT_ERROR_INPUT;
 }
 
 bool ply_repair(uint8_t **data, size_t *size_bytes)

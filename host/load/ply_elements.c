@@ -27,7 +27,7 @@ struct element {
     unsigned long long count;
     size_t begin, end; /* offsets of its lines in the header */
     size_t data_end;   /* offset behind its data; filled by check_elements */
-    uint32_t first_property, property_count;
+    uint32_t line, first_property, property_count;
 };
 
 enum format { FORMAT_ASCII, FORMAT_LITTLE, FORMAT_BIG };
@@ -36,7 +36,9 @@ struct header {
     struct element *elements;
     struct property *properties;
     uint32_t element_count, element_capacity, property_count, property_capacity;
+    uint32_t line_count;
     enum format format;
+    bool has_end;
     size_t end;
 };
 
@@ -64,19 +66,21 @@ static struct type type_of(const char *name)
     return (struct type){0, false};
 }
 
-/* Splits the line at `at` into words; gives the offset of the next line. */
+/* Splits the line at `at` into its first words, of which longer ones are cut; gives the offset of
+   the next line. */
 static size_t read_line(const uint8_t *data, size_t size_bytes, size_t at,
                         char words[WORDS_MAX][WORD_BYTES])
 {
-    char line[256];
-    size_t bytes = 0;
-    while (at + bytes < size_bytes && data[at + bytes] != '\n' && data[at + bytes] != '\r')
-        bytes++;
-    snprintf(line, sizeof line, "%.*s", (int)(bytes < sizeof line ? bytes : sizeof line - 1),
-             (const char *)data + at);
+    size_t word = 0, used = 0;
     memset(words, 0, WORDS_MAX * sizeof *words);
-    sscanf(line, "%31s %31s %31s %31s %31s", words[0], words[1], words[2], words[3], words[4]);
-    at += bytes;
+    for (; at < size_bytes && data[at] != '\n' && data[at] != '\r'; at++) {
+        if (data[at] <= ' ') {
+            word += used > 0;
+            used = 0;
+        } else if (word < WORDS_MAX && used + 1 < WORD_BYTES) {
+            words[word][used++] = (char)data[at];
+        }
+    }
     bool wide = at + 1 < size_bytes && data[at] == '\r' && data[at + 1] == '\n';
     return at + (wide ? 2 : 1);
 }
@@ -95,23 +99,23 @@ static bool add_property(struct header *header, char words[WORDS_MAX][WORD_BYTES
 
 static bool add_element(struct header *header, size_t begin, char words[WORDS_MAX][WORD_BYTES])
 {
-    struct element element = {.begin = begin, .first_property = header->property_count};
+    struct element element = {
+        .begin = begin, .line = header->line_count, .first_property = header->property_count};
     memcpy(element.name, words[1], sizeof element.name);
     element.count = strtoull(words[2], NULL, 10);
     return ARRAY_PUSH(header->elements, header->element_count, header->element_capacity, element);
 }
 
-/* Reads the header of a file that ply_check has accepted, so that the header has an end. False:
-   memory ran out. */
+/* False: memory ran out. */
 static bool read_header(const uint8_t *data, size_t size_bytes, struct header *header)
 {
     char words[WORDS_MAX][WORD_BYTES];
     bool good = true;
-    for (size_t at = 0, next; good && at < size_bytes; at = next) {
+    for (size_t at = 0, next; good && !header->has_end && at < size_bytes; at = next) {
         next = read_line(data, size_bytes, at, words);
         header->end = next;
-        if (strcmp(words[0], "end_header") == 0)
-            break;
+        header->line_count++;
+        header->has_end = strcmp(words[0], "end_header") == 0;
         if (strcmp(words[0], "format") == 0)
             header->format = strcmp(words[1], "binary_little_endian") == 0 ? FORMAT_LITTLE
                              : strcmp(words[1], "binary_big_endian") == 0  ? FORMAT_BIG
@@ -120,10 +124,32 @@ static bool read_header(const uint8_t *data, size_t size_bytes, struct header *h
             good = add_element(header, at, words);
         else if (strcmp(words[0], "property") == 0 && header->element_count)
             good = add_property(header, words);
-        if (good && header->element_count)
+        if (good && header->element_count && !header->has_end)
             header->elements[header->element_count - 1].end = next;
     }
     return good;
+}
+
+whit_result ply_check(const whit_log *log, const char *path, const uint8_t *data, size_t size_bytes)
+{
+    struct header header = {0};
+    unsigned long long max = 0;
+    uint32_t line = 0;
+    whit_result result = read_header(data, size_bytes, &header) ? WHIT_OK : WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; i < header.element_count; i++) {
+        line = header.elements[i].count > max ? header.elements[i].line : line;
+        max = header.elements[i].count > max ? header.elements[i].count : max;
+    }
+    if (result == WHIT_OK && !header.has_end) {
+        log_error(log, "%s:%u: the file ends within its header", path, header.line_count + 1);
+        result = WHIT_ERROR_INPUT;
+    } else if (result == WHIT_OK && header.end <= size_bytes && max > size_bytes - header.end) {
+        log_error(log, "%s:%u: %llu elements, but only %zu bytes behind the header", path, line,
+                  max, size_bytes - header.end);
+        result = WHIT_ERROR_INPUT;
+    }
+    header_finish(&header);
+    return result;
 }
 
 /* --- numbers -------------------------------------------------------------------------------- */
@@ -233,12 +259,12 @@ static enum outcome read_strip(struct cursor *from, const struct property *list,
     return READ;
 }
 
-/* Reads or skips all instances of an element. If `strips` is non-NULL, the first list property of
-   each instance is read as a strip. */
+/* Reads or skips all instances of an element; without properties they have no data. If `strips` is
+   non-NULL, the first list property of each instance is read as a strip. */
 static enum outcome read_element(struct cursor *from, const struct header *header,
                                  const struct element *element, struct strips *strips)
 {
-    for (unsigned long long i = 0; i < element->count; i++) {
+    for (unsigned long long i = 0; element->property_count && i < element->count; i++) {
         bool found = false;
         for (uint32_t k = 0; k < element->property_count; k++) {
             const struct property *property = &header->properties[element->first_property + k];
@@ -393,7 +419,7 @@ static whit_result check_elements(const whit_log *log, const char *path, const u
         struct element *element = &header->elements[i];
         const char *why_not = NULL;
         unsigned long long done = 0;
-        for (; done < element->count && !why_not; done++) {
+        for (; element->property_count && done < element->count && !why_not; done++) {
             if (lines)
                 next_line(&from, end);
             why_not = skip_instance(&from, header, element);

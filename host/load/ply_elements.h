@@ -7,6 +7,10 @@
 
 #include "base/log.h"
 
+/* Checks that the header ends, and that its counts of elements are no larger than the data's size
+   in bytes: assimp would read on for ever, and trusts counts. Logs an error with its line. */
+WHIT_CHECK whit_result ply_check(const whit_log *log, const char *path, const uint8_t *data,
+                                 size_t size_bytes);
 /* Converts triangle strips to faces, since assimp 5.2 reads only the last triangle of a strip, in a
    file that ply_check accepted. Replaces *data, which is malloc'ed with a zero byte behind it,
    before and after. Damaged strips are logged. */

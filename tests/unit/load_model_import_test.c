@@ -457,6 +457,17 @@ TEST_IN(claims_of_endless_memory_are_refused, fixture_begin, fixture_end)
     fixture_refused(path, ".ply:3: 4000000000 elements, but only 10 bytes behind the header");
 }
 
+/* A word of 32 characters is one word: nothing is missing of the element of that name. */
+TEST_IN(long_names_of_ply_elements_are_one_word, fixture_begin, fixture_end)
+{
+    const char *path = put_text(
+        "a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                 "property float z\nelement a23456789b23456789c23456789d2341 0\nproperty float w\n"
+                 "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                 "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+}
+
 /* Headers without an end are refused, since assimp would read until its time limit. */
 TEST_IN(headers_without_an_end_are_refused, fixture_begin, fixture_end)
 {

@@ -121,6 +121,15 @@ TEST_IN(groups_and_their_materials, folder_begin, folder_end)
           "groups.mtl", "<newmtl m#\nword# 1\n>");
 }
 
+TEST_IN(elements_without_properties, folder_begin, folder_end)
+{
+    check("elements.ply",
+          "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+          "float z\n<element a #\n>element face 1\nproperty list uchar int vertex_indices\n"
+          "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n<\n>",
+          NULL, NULL);
+}
+
 TEST_IN(objects, folder_begin, folder_end)
 {
     check("objects.json",
