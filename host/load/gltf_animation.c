@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "load/gltf_accessor.h"
 #include "load/gltf_json.h"
+#include "scene/afford.h"
 
 struct target {
     uint32_t node; /* file's index, or SCENE_NONE */
@@ -65,7 +66,9 @@ static bool read_sampler(const struct gltf *gltf, const json_t *sampler,
         !gltf_read_floats(gltf, output, components, &out->values, &values))
         return false;
     *usable &= values == (uint64_t)out->key_count * (out->interpolation == SCENE_CUBIC ? 3 : 1);
-    return true;
+    return scene_afford(gltf->scene,
+                        (out->key_count + (uint64_t)values * components) * sizeof(float),
+                        "%s of %u keys", at->text, out->key_count);
 }
 
 struct played {

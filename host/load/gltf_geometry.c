@@ -158,6 +158,7 @@ static bool read_indices(const struct gltf *gltf, const struct gltf_primitive *p
 
 struct geometry {
     struct gltf *gltf;
+    struct gltf_skin *skins;      /* of the file; read when a node first has them */
     const struct gltf_skin *skin; /* of the mesh that is read, or NULL */
     uint64_t lines_and_points, morphed, tangents;
     bool drawn;
@@ -337,17 +338,31 @@ static whit_result load_mesh(struct geometry *geometry, uint32_t index, uint32_t
 static whit_result load_skinned(struct geometry *geometry, uint32_t node)
 {
     struct gltf *gltf = geometry->gltf;
-    struct gltf_skin skin = {0};
     uint32_t mesh, index;
     if (!gltf_node_mesh(gltf, node, &mesh, &index))
         return WHIT_ERROR_INPUT;
     if (mesh == SCENE_NONE || index == SCENE_NONE)
         return WHIT_OK;
-    bool read = gltf_skin_read(gltf, index, &skin);
-    geometry->skin = &skin;
-    whit_result result = read ? load_mesh(geometry, mesh, &gltf->skinned[node]) : WHIT_ERROR_INPUT;
+    struct gltf_skin *skin = &geometry->skins[index];
+    if (!skin->moves && !gltf_skin_read(gltf, index, skin))
+        return WHIT_ERROR_INPUT;
+    geometry->skin = skin;
+    whit_result result = load_mesh(geometry, mesh, &gltf->skinned[node]);
     geometry->skin = NULL;
-    free(skin.moves);
+    return result;
+}
+
+static whit_result load_all_skinned(struct geometry *geometry)
+{
+    struct gltf *gltf = geometry->gltf;
+    uint32_t skins = gltf_count(gltf, "skins");
+    geometry->skins = array_alloc_zeroed(skins, sizeof *geometry->skins);
+    whit_result result = geometry->skins ? WHIT_OK : WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; i < gltf->order_count && result == WHIT_OK; i++)
+        result = load_skinned(geometry, gltf->order[i]);
+    for (uint32_t i = 0; geometry->skins && i < skins; i++)
+        gltf_skin_finish(gltf, &geometry->skins[i]);
+    free(geometry->skins);
     return result;
 }
 
@@ -386,7 +401,7 @@ whit_result gltf_load_meshes(struct gltf *gltf)
     for (uint32_t i = 0; i < gltf->mesh_count && result == WHIT_OK; i++)
         if (gltf->mesh_used[i])
             result = load_mesh(&geometry, i, &gltf->meshes[i]);
-    for (uint32_t i = 0; i < gltf->order_count && result == WHIT_OK; i++)
-        result = load_skinned(&geometry, gltf->order[i]);
+    if (result == WHIT_OK)
+        result = load_all_skinned(&geometry);
     return result == WHIT_OK ? note_dropped(&geometry) : result;
 }

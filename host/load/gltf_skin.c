@@ -4,6 +4,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "scene/afford.h"
 
 /* --- joints --------------------------------------------------------------------------------- */
 
@@ -20,6 +21,9 @@ static struct affine move_of(const struct affine *world, const float *matrix)
 static bool read_moves(const struct gltf *gltf, const struct gltf_place *at, const json_t *joints,
                        const float *matrices, struct gltf_skin *out)
 {
+    uint64_t bytes = out->joint_count * sizeof *out->moves;
+    if (!scene_afford(gltf->scene, bytes, "%s of %u joints", at->text, out->joint_count))
+        return false;
     out->moves = array_alloc(out->joint_count, sizeof *out->moves);
     if (!out->moves)
         return gltf_fail(gltf, at, "out of memory");
@@ -55,6 +59,13 @@ bool gltf_skin_read(const struct gltf *gltf, uint32_t index, struct gltf_skin *o
     bool good = enough && read_moves(gltf, &at, joints, matrices, out);
     free(matrices);
     return good;
+}
+
+void gltf_skin_finish(const struct gltf *gltf, struct gltf_skin *skin)
+{
+    if (skin->moves)
+        scene_give_back(gltf->scene, skin->joint_count * sizeof *skin->moves);
+    free(skin->moves);
 }
 
 /* --- vertices ------------------------------------------------------------------------------- */

@@ -5,12 +5,14 @@
 #include "load/gltf_geometry.h"
 
 struct gltf_skin {
-    struct affine *moves; /* by joint, of vertices that follow it alone; to free() */
+    struct affine *moves; /* by joint, of vertices that follow it alone */
     uint32_t joint_count;
 };
 
-/* Reads a skin of the file. False: an error is logged; out->moves is to be freed all the same. */
+/* Reads a skin of the file, which counts as taken memory until gltf_skin_finish. False: an error
+   is logged. */
 bool gltf_skin_read(const struct gltf *gltf, uint32_t index, struct gltf_skin *out);
+void gltf_skin_finish(const struct gltf *gltf, struct gltf_skin *skin);
 /* Moves the part's positions and normals from the mesh's space to that of the node tree. A
    primitive without joints stays as it is. */
 bool gltf_skin_apply(const struct gltf *gltf, const struct gltf_skin *skin,

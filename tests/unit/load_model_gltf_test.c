@@ -597,6 +597,21 @@ TEST_IN(steps_stay_steps, fixture_begin, fixture_end)
     assert_float_equal(scene->channels[1].values[3], 1, 0);
 }
 
+/* Each channel has times and values of its own: 3 keys of 4 floats. */
+TEST_IN(keys_of_channels_count_as_memory, fixture_begin, fixture_end)
+{
+    uint64_t still = load(ONE_NODE)->memory_taken;
+    fixture.scene->memory_limit = 2 * still + 2 * 48 - 1;
+    const char *path =
+        write_gltf(ONE_NODE ",\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{\"node\":0,"
+                            "\"path\":\"translation\"}},{\"sampler\":0,\"target\":{\"node\":0,"
+                            "\"path\":\"scale\"}}],\"samplers\":[{\"input\":1,\"output\":2}]}]");
+    assert_int_equal(fixture_load(path), WHIT_ERROR_INPUT);
+    assert_non_null(strstr(messages.last_error, "animations[0].channels[1] of 3 keys would take"));
+    fixture.scene->memory_limit += still + 48 + 1;
+    assert_int_equal(fixture_load(path), WHIT_OK);
+}
+
 /* The model is drawn without a channel that cannot be played. */
 static void dropped(const char *input, const char *more, const char *note)
 {

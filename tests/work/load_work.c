@@ -103,6 +103,15 @@ TEST_IN(meshes_and_materials, folder_begin, folder_end)
           NULL, NULL);
 }
 
+TEST_IN(nodes_of_one_skin, folder_begin, folder_end)
+{
+    check("skin.gltf",
+          GLTF "\"accessors\":[" ACCESSOR "],\"meshes\":[{\"primitives\":[{\"attributes\":"
+               "{\"POSITION\":0}}]}],\"skins\":[{\"joints\":[<~#>]}],"
+               "\"nodes\":[<~{\"mesh\":0,\"skin\":0}>]}",
+          NULL, NULL);
+}
+
 TEST_IN(missing_pictures, folder_begin, folder_end)
 {
     check("pictures.gltf",
