@@ -237,24 +237,37 @@ static bool read_option(struct reader *reader, char **at, struct mtl_texture *ma
     return true;
 }
 
+/* Offset of the blank in `name` from which on there are only options; its length: there is none.
+   Words are parsed from right to left, so that each is parsed once. */
+static size_t find_trailing_options(const char *name)
+{
+    size_t length = strlen(name), found = length;
+    char *copy = array_alloc_zeroed(length + 1, 2);
+    char *only = copy + length + 1; /* by offset: an option, and behind it there are only options */
+    if (!copy)
+        return length;
+    memcpy(copy, name, length);
+    for (size_t i = length; i-- > 0;) {
+        struct mtl_texture trial = {0};
+        char *at = copy + i + 1;
+        if (!is_blank(copy[i]) || copy[i + 1] != '-' || !read_option(NULL, &at, &trial))
+            continue;
+        memcpy(copy + i, name + i, (size_t)(at - copy) - i); /* read_option cuts words off */
+        at = skip_blanks(at);
+        only[i + 1] = !*at || only[at - copy];
+        found = only[i + 1] && copy[i] == ' ' ? i : found;
+    }
+    free(copy);
+    return found;
+}
+
 /* Reads options that some writers put behind the file's name, and cuts them off `name`. */
 static void cut_trailing_options(struct reader *reader, char *name, struct mtl_texture *map)
 {
-    for (char *at = strstr(name, " -"); at; at = strstr(at + 1, " -")) {
-        char *options = at + 1;
-        struct mtl_texture trial = *map;
-        char *copy = string_copy(options), *rest = copy;
-        while (rest && read_option(NULL, &rest, &trial))
-            continue;
-        bool all = rest && *skip_blanks(rest) == 0;
-        free(copy);
-        if (!all)
-            continue;
-        while (read_option(reader, &options, map))
-            continue;
-        *at = 0;
-        return;
-    }
+    char *end = name + find_trailing_options(name), *options = *end ? end + 1 : end;
+    while (read_option(reader, &options, map))
+        continue;
+    *end = 0;
 }
 
 static void trim_end(char *text)

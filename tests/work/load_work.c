@@ -103,6 +103,12 @@ TEST_IN(meshes_and_materials, folder_begin, folder_end)
           NULL, NULL);
 }
 
+TEST_IN(options_behind_a_texture, folder_begin, folder_end)
+{
+    check("options.obj", "mtllib #options.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n",
+          "options.mtl", "newmtl m\nmap_Kd x< -blendu a> b\n");
+}
+
 TEST_IN(nodes_of_one_skin, folder_begin, folder_end)
 {
     check("skin.gltf",
