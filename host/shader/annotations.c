@@ -42,8 +42,10 @@ static bool next_word(struct line *line, char *text, size_t text_bytes)
     size_t used = 0;
     while (line->at < line->end &&
            (quoted ? *line->at != '"' : !isspace((unsigned char)*line->at))) {
-        if (used + 1 >= text_bytes)
+        if (used + 1 >= text_bytes) {
+            text[used] = 0;
             return false;
+        }
         text[used++] = *line->at++;
     }
     line->at += quoted && line->at < line->end;
@@ -499,7 +501,7 @@ whit_result shader_annotations_read(const whit_log *log, whit_shader *shader,
         struct scan scan;
         scan_begin(&scan, shader->text.files[f].text, shader->text.files[f].bytes);
         scan.annotations = true;
-        while (scan_next(&scan)) {
+        while (!errors->more && scan_next(&scan)) {
             if (scan.kind != SCAN_ANNOTATION)
                 continue;
             const char *at = scan.annotation, *end = at + strcspn(at, "\n");

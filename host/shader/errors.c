@@ -6,18 +6,19 @@
 void shader_error_put(const whit_log *log, struct shader_errors *errors,
                       const struct shader_error *error)
 {
+    if (errors && errors->count == SHADER_ERROR_MAX) {
+        if (!errors->more++)
+            log_error(log, "%s: there are more errors", error->file);
+        return;
+    }
     if (error->column)
         log_error(log, "%s:%u:%u: %s", error->file, error->line, error->column, error->reason);
     else if (error->line)
         log_error(log, "%s:%u: %s", error->file, error->line, error->reason);
     else
         log_error(log, "%s: %s", error->file, error->reason);
-    if (!errors)
-        return;
-    if (errors->count < SHADER_ERROR_MAX)
+    if (errors)
         errors->items[errors->count++] = *error;
-    else
-        errors->more++;
 }
 
 void shader_error_add(const whit_log *log, struct shader_errors *errors, const char *file,

@@ -21,11 +21,11 @@ struct shader_error {
 struct shader_errors {
     struct shader_error items[SHADER_ERROR_MAX];
     uint32_t count;
-    uint32_t more; /* number of further errors, which were not kept */
+    uint32_t more; /* number of further errors that are known */
 };
 
-/* Keeps an error and logs it as "FILE:line:column: reason", or without what is 0. `errors` may be
-   NULL. */
+/* Keeps an error and logs it as "FILE:line:column: reason", or without what is 0. Of the errors
+   behind the first SHADER_ERROR_MAX it only logs that there are some. `errors` may be NULL. */
 void shader_error_put(const whit_log *log, struct shader_errors *errors,
                       const struct shader_error *error);
 /* The same, with a reason to be formatted and no column. */

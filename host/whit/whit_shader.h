@@ -42,7 +42,8 @@ typedef struct whit_shader_error {
    until the next call. */
 uint32_t whit_shader_compiler_errors(const whit_shader_compiler *compiler,
                                      const whit_shader_error **errors);
-/* The number of errors of that call beyond those. */
+/* The number of errors of that call beyond those, as far as known: reading annotations ends at the
+   first one. */
 uint32_t whit_shader_compiler_errors_left(const whit_shader_compiler *compiler);
 
 /* Reads the file with all that it includes, or the functions that a .png or .exr carries under

@@ -1,5 +1,6 @@
 /* Annotations of a user's file, and the values of its sliders. */
 #include "base/color.h"
+#include "messages_fixture.h"
 #include "shader/annotations.h"
 #include "shader/sliders.h"
 #include "unit.h"
@@ -45,6 +46,25 @@ TEST(lines_are_read)
     assert_int_equal(s[4].word_count, 3);
     assert_string_equal(s[4].words[2], "cold");
     assert_int_equal(s[4].first, 6);
+    shader_text_free(&shader.text);
+}
+
+/* Reading ends at the first error that is not kept, so that a text of many takes no time. */
+TEST(errors_are_limited_in_number)
+{
+    whit_shader shader;
+    char text[64 * 16] = "";
+    for (int i = 0; i < 64; ++i)
+        strcat(text, "//@ fuel 0\n");
+    strcat(text, "vec3 miss(vec3 dir) { return dir; }\n");
+    assert_int_equal(read_text(text, &shader), WHIT_ERROR_INPUT);
+    assert_int_equal(errors.count, SHADER_ERROR_MAX);
+    assert_int_equal(errors.more, 1);
+    errors = (struct shader_errors){0};
+    const whit_log counted = messages_log(&messages);
+    assert_int_equal(shader_annotations_read(&counted, &shader, &errors), WHIT_ERROR_INPUT);
+    assert_int_equal(messages.errors, SHADER_ERROR_MAX + 1);
+    assert_string_equal(messages.last_error, "a.glsl: there are more errors");
     shader_text_free(&shader.text);
 }
 
@@ -175,6 +195,8 @@ TEST(lines_that_are_none_are_refused_with_their_line)
                  {"fuel 0", "from 1 to 30000"},
                  {"fuel 30001", "from 1 to 30000"},
                  {"fuel many", "from 1 to 30000"},
+                 {"fuel 1111111111111111111111111111111111111111111111111111111111111111",
+                  "not `111111111111111111111111111111111111111111111111111111111111`"},
                  {"fuel 10 20", "nothing more"},
                  {"whit 2", "this whit has 1"},
                  {"whit 1 x", "nothing more"},
