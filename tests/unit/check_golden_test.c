@@ -2,6 +2,8 @@
 #include "app/check/golden.h"
 #include "folder_fixture.h"
 
+#include <sys/resource.h>
+
 #include "app/cli.h"
 
 static const struct golden_case room = {.name = (char[]){"room"},
@@ -97,6 +99,32 @@ TEST(order_and_repetition_mean_nothing)
     golden_finish(&golden);
 }
 
+#define IDS " a ids 1 colors 2 3x4 rays 5 6 7 8 mean 1 2 3\n"
+
+/* Inserting each where it belongs takes 10 s of the processor, sorting once 0.1 s. */
+TEST(falling_order_takes_no_time)
+{
+    enum { MANY = 100000 };
+    struct rlimit limit, before;
+    struct golden golden;
+    own_memory char *falling = malloc((size_t)MANY * 32);
+    char *at = falling + sprintf(falling, HEAD "case a of b\n" IDS " a parts");
+    for (int i = MANY; i > 0; --i)
+        at += sprintf(at, " %08x", i);
+    for (int i = MANY; i > 0; --i)
+        at += sprintf(at, "\npart %d\n %08x", i, i);
+    assert_int_equal(getrlimit(RLIMIT_CPU, &before), 0);
+    limit = (struct rlimit){2, before.rlim_max};
+    assert_int_equal(setrlimit(RLIMIT_CPU, &limit), 0);
+    assert_true(golden_read_text(&golden, "x.golden", falling, GOLDEN_OF_DEVICE));
+    assert_int_equal(setrlimit(RLIMIT_CPU, &before), 0);
+    assert_int_equal(golden_find(&golden, "a")->part_count, MANY);
+    assert_true(golden_case_has_part(golden_find(&golden, "a"), 1));
+    assert_false(golden_case_has_part(golden_find(&golden, "a"), MANY + 1));
+    assert_int_equal(golden.part_count, MANY);
+    golden_finish(&golden);
+}
+
 /* A golden file of another version of whit is read all the same, as is one that an editor on
    Windows has written. */
 TEST(another_whit_is_no_reason_to_refuse)
@@ -130,7 +158,6 @@ TEST(paths_are_beside_the_suite)
     }
 }
 
-#define IDS " a ids 1 colors 2 3x4 rays 5 6 7 8 mean 1 2 3\n"
 #define OTHER                                                                                      \
     "x.golden:4: a line above, from line 2 on, says something else of the case `a`, which two "
 TEST(damage_is_told_by_its_line)

@@ -9,6 +9,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/key_table.h"
 #include "base/text.h"
 
 enum { GOLDEN_BYTES_MAX = 64 << 20 };
@@ -50,21 +51,30 @@ uint32_t golden_part_hash(const char *key, uint64_t content)
     return (uint32_t)(hash ^ hash >> 32);
 }
 
+/* The index of the case's part with this hash, or where it would be inserted. */
+static uint32_t place_of_part(const struct golden_case *item, uint32_t hash)
+{
+    uint32_t low = 0, high = item->part_count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (item->parts[middle] < hash)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 bool golden_case_has_part(const struct golden_case *item, uint32_t hash)
 {
-    for (uint32_t i = 0; i < item->part_count; ++i) {
-        if (item->parts[i] == hash)
-            return true;
-    }
-    return false;
+    uint32_t at = place_of_part(item, hash);
+    return at < item->part_count && item->parts[at] == hash;
 }
 
 bool golden_case_add_part(struct golden_case *item, uint32_t hash)
 {
-    uint32_t at = 0;
-    while (at < item->part_count && item->parts[at] < hash)
-        ++at;
-    if (at < item->part_count && item->parts[at] == hash)
+    uint32_t at = place_of_part(item, hash);
+    if (golden_case_has_part(item, hash))
         return true;
     if (!ARRAY_PUSH(item->parts, item->part_count, item->capacity, hash))
         return false;
@@ -77,10 +87,15 @@ bool golden_case_add_part(struct golden_case *item, uint32_t hash)
 /* The index of the case with this name, or where it would be inserted. */
 static uint32_t place_of(const struct golden *golden, const char *name)
 {
-    uint32_t at = 0;
-    while (at < golden->count && strcmp(golden->cases[at].name, name) < 0)
-        ++at;
-    return at;
+    uint32_t low = 0, high = golden->count;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (strcmp(golden->cases[middle].name, name) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
 }
 
 struct golden_case *golden_find(const struct golden *golden, const char *name)
@@ -173,11 +188,15 @@ bool golden_put_part(struct golden *golden, const char *key, uint32_t hash)
 
 /* ---- Reading ---- */
 
+/* While a file is read, cases and parts are in its order, and parts may be there twice; sort() then
+   puts them in that of a golden. */
 struct reading {
     struct golden *golden;
+    struct key_table names; /* index in golden->cases by name */
     const char *where;
     uint32_t line;
-    char *key; /* key of the part being read; NULL: none */
+    char *key;        /* key of the part being read; NULL: none */
+    size_t key_bytes; /* of the keys of all parts */
 };
 
 static bool refuse(const struct reading *reading, const char *format, ...) WHIT_PRINTF(2, 3);
@@ -239,14 +258,45 @@ static bool same_parts(const struct golden_case *a, const struct golden_case *b)
            memcmp(a->parts, b->parts, a->part_count * sizeof *a->parts) == 0;
 }
 
+static int compare_hashes(const void *a, const void *b)
+{
+    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+static void sort_hashes(struct golden_case *item)
+{
+    uint32_t kept = 0;
+    if (item->part_count)
+        qsort(item->parts, item->part_count, sizeof *item->parts, compare_hashes);
+    for (uint32_t i = 0; i < item->part_count; ++i) {
+        if (!kept || item->parts[kept - 1] != item->parts[i])
+            item->parts[kept++] = item->parts[i];
+    }
+    item->part_count = kept;
+}
+
+/* Reads a hash of up to eight digits, and moves *text behind it. */
+static bool read_hash(const char **text, uint32_t *hash)
+{
+    const char *digits = *text + strspn(*text, " ");
+    size_t length = strspn(digits, "0123456789abcdefABCDEF");
+    if (length == 0 || length > 8)
+        return false;
+    *hash = (uint32_t)strtoul(digits, NULL, 16);
+    *text = digits + length;
+    return true;
+}
+
 static bool read_parts(struct reading *reading, struct golden_case *item, const char *text)
 {
     struct golden_case is = {.name = NULL};
     uint32_t hash;
-    int length;
     bool whole = true;
-    for (; whole && sscanf(text, "%8" SCNx32 "%n", &hash, &length) == 1; text += length)
-        whole = golden_case_add_part(&is, hash) || refuse(reading, "out of memory");
+    while (whole && read_hash(&text, &hash))
+        whole = ARRAY_PUSH(is.parts, is.part_count, is.capacity, hash) ||
+                refuse(reading, "out of memory");
+    sort_hashes(&is);
     if (whole && text[strspn(text, " ")])
         whole = refuse(reading, "`%.40s` is no hash of a part", text);
     if (whole && item->part_count)
@@ -277,15 +327,17 @@ static bool read_case(struct reading *reading, char *name)
     char *rest = name + strcspn(name, " "), *text;
     if (*rest)
         *rest++ = '\0';
-    struct golden_case *item = golden_find(reading->golden, name);
-    if (!item) {
+    struct golden *golden = reading->golden;
+    uint32_t index = golden->count;
+    if (!key_table_find(&reading->names, name, strlen(name), &index)) {
         struct golden_case made = {.name = string_copy(name), .line = reading->line};
-        if (!made.name || !insert(reading->golden, &made)) {
+        if (!made.name || !key_table_add(&reading->names, name, strlen(name), index) ||
+            !ARRAY_PUSH(golden->cases, golden->count, golden->capacity, made)) {
             free(made.name);
             return refuse(reading, "out of memory");
         }
-        item = golden_find(reading->golden, name);
     }
+    struct golden_case *item = &golden->cases[index];
     if ((text = behind(rest, "of")))
         return keep_text(reading, item, &item->made_by, text);
     if ((text = behind(rest, "ids")))
@@ -298,16 +350,29 @@ static bool read_case(struct reading *reading, char *name)
                   name);
 }
 
+static bool add_part(struct reading *reading, uint32_t hash)
+{
+    struct golden *golden = reading->golden;
+    const struct golden_part part = {string_copy(reading->key), hash};
+    reading->key_bytes += strlen(reading->key) + 1;
+    if (reading->key_bytes > GOLDEN_BYTES_MAX) {
+        free(part.key);
+        return refuse(reading, "the names of its parts are too long");
+    }
+    if (part.key && ARRAY_PUSH(golden->parts, golden->part_count, golden->part_capacity, part))
+        return true;
+    free(part.key);
+    return refuse(reading, "out of memory");
+}
+
 /* Reads an indented line: a hash of the part being read, or a line that names its case. */
 static bool read_inner(struct reading *reading, char *line)
 {
+    const char *end = line;
     uint32_t hash;
-    int length = -1;
-    bool is_hash = sscanf(line, "%8" SCNx32 "%n", &hash, &length) == 1 && !line[length];
-    if (!is_hash)
+    if (!read_hash(&end, &hash) || *end)
         return read_case(reading, line);
-    return reading->key ? golden_put_part(reading->golden, reading->key, hash) ||
-                              refuse(reading, "out of memory")
+    return reading->key ? add_part(reading, hash)
                         : refuse(reading, "`%s`: there is no part above, whose hash it is", line);
 }
 
@@ -332,6 +397,34 @@ static bool read_line(struct reading *reading, char *line)
     if (strncmp(line, "<<<<<<<", 7) == 0 || strncmp(line, "=======", 7) == 0)
         return refuse(reading, "a conflict of a merge is left in it");
     return refuse(reading, "`%.40s`: `case NAME` or `part NAME` is needed", line);
+}
+
+static int compare_cases(const void *a, const void *b)
+{
+    return strcmp(((const struct golden_case *)a)->name, ((const struct golden_case *)b)->name);
+}
+
+static int compare_golden_parts(const void *a, const void *b)
+{
+    const struct golden_part *x = a, *y = b;
+    int order = strcmp(x->key, y->key);
+    return order ? order : compare_hashes(&x->hash, &y->hash);
+}
+
+static void sort(struct golden *golden)
+{
+    uint32_t kept = 0;
+    if (golden->count)
+        qsort(golden->cases, golden->count, sizeof *golden->cases, compare_cases);
+    if (golden->part_count)
+        qsort(golden->parts, golden->part_count, sizeof *golden->parts, compare_golden_parts);
+    for (uint32_t i = 0; i < golden->part_count; ++i) {
+        if (kept && compare_golden_parts(&golden->parts[kept - 1], &golden->parts[i]) == 0)
+            free(golden->parts[i].key);
+        else
+            golden->parts[kept++] = golden->parts[i];
+    }
+    golden->part_count = kept;
 }
 
 static bool are_whole(struct reading *reading)
@@ -380,6 +473,8 @@ bool golden_read_text(struct golden *golden, const char *where, char *text, enum
             whole = reading.line == 1 ? read_head(&reading, line) : read_line(&reading, line);
     }
     free(reading.key);
+    key_table_finish(&reading.names);
+    sort(golden);
     whole = whole && are_whole(&reading);
     return whole;
 }
