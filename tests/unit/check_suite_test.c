@@ -25,6 +25,33 @@ static bool read_text(struct suite *suite, const char *text, const char *root)
     return suite_read(suite, put_text("s.whit", text), root, NULL, say, NULL);
 }
 
+/* Small suites stay small: what stands in a line once is kept for each of its cases. */
+TEST_IN(copies_are_limited, folder_begin, folder_end)
+{
+    enum { LONG = 600000, CASES = 60 };
+    struct suite suite;
+    own_memory char *text = malloc(LONG + 1000);
+    char *at = text;
+    for (int i = 0; i < CASES; ++i)
+        at += sprintf(at, "%s%d", i ? "," : "t{", i);
+    at += sprintf(at, "} a.json\n* expect rays == ");
+    memset(at, '0', LONG);
+    strcpy(at + LONG, "1\nx a.json --wrong\n");
+    assert_false(read_text(&suite, text, NULL));
+    assert_string_equal(
+        said, "s.whit:2: expectations of more than 64 MiB, each counted for each of its cases\n");
+    suite_finish(&suite);
+
+    at = text + sprintf(text, "t{");
+    memset(at, 'a', 2000);
+    at += 2000 + sprintf(at + 2000, "} a.json ");
+    for (int i = 0; i < 600; ++i)
+        at += sprintf(at, "{}");
+    assert_false(read_text(&suite, text, NULL));
+    assert_string_equal(said, "s.whit:1: too long with {} filled in, or out of memory\n");
+    suite_finish(&suite);
+}
+
 TEST_IN(lines_become_cases, folder_begin, folder_end)
 {
     struct suite suite;

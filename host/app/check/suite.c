@@ -10,7 +10,13 @@
 #include "base/file.h"
 #include "base/text.h"
 
-enum { SUITE_BYTES_MAX = 1 << 20, WORDS_MAX = 256, SAID_BYTES = 2048, WHERE_BYTES = 600 };
+enum {
+    SUITE_BYTES_MAX = 1 << 20,
+    EXPECTATION_BYTES_MAX = 64 << 20,
+    WORDS_MAX = 256,
+    SAID_BYTES = 2048,
+    WHERE_BYTES = 600
+};
 
 /* The line being read. */
 struct line {
@@ -138,6 +144,10 @@ static bool expect_one(const struct line *line, struct check_case *item, const c
 {
     char why[SETTING_WHY_BYTES];
     struct check_expectation one = {.line = line->number};
+    line->suite->expectation_bytes += sizeof one + 2 * length; /* its text, and a name in it */
+    if (line->suite->expectation_bytes > EXPECTATION_BYTES_MAX)
+        return refuse(line, "expectations of more than %d MiB, each counted for each of its cases",
+                      EXPECTATION_BYTES_MAX >> 20);
     bool read = expectation_read(&one, text, length, item->settings, why);
     if (read &&
         ARRAY_PUSH(item->expectations, item->expectation_count, item->expectation_capacity, one))
@@ -205,13 +215,15 @@ static const char *behind_expect(const char *text)
     return is_it ? text + length : NULL;
 }
 
-/* A copy of `text` with each {} replaced by `alternative`. NULL: out of memory. */
+/* A copy of `text` with each {} replaced by `alternative`. NULL: it would be longer than a suite
+   may be, or memory ran out. */
 static char *fill_in(const char *text, const char *alternative, size_t length)
 {
     size_t count = 0;
     for (const char *at = text; (at = strstr(at, "{}")) != NULL; at += 2)
         ++count;
-    char *out = array_alloc(strlen(text) + count * length + 1, 1), *to = out;
+    size_t bytes = strlen(text) + count * length + 1;
+    char *out = bytes <= SUITE_BYTES_MAX ? array_alloc(bytes, 1) : NULL, *to = out;
     for (const char *at; out && (at = strstr(text, "{}")) != NULL; text = at + 2) {
         memcpy(to, text, (size_t)(at - text));
         to += at - text;
@@ -238,7 +250,8 @@ static bool read_alternative(const struct line *line, const char *name, const ch
     char *whole =
         string_format("%.*s%.*s%s", (int)(open - name), name, (int)length, alternative, close + 1);
     char *filled = fill_in(rest, alternative, length);
-    bool read = whole && filled ? read_one(line, whole, filled) : refuse(line, "out of memory");
+    bool read = whole && filled ? read_one(line, whole, filled)
+                                : refuse(line, "too long with {} filled in, or out of memory");
     free(whole);
     free(filled);
     return read;
@@ -288,10 +301,12 @@ static bool begin_roots(struct suite *suite, const char *root)
     return known;
 }
 
-/* Whether cases were refused because there is no room for more: more need not be told. */
+/* Whether cases or expectations were refused because there is no room for more: more need not be
+   told. */
 static bool is_too_long(const struct suite *suite)
 {
-    return suite->count == CHECK_CASES_MAX && suite->wrong;
+    return (suite->count == CHECK_CASES_MAX && suite->wrong) ||
+           suite->expectation_bytes > EXPECTATION_BYTES_MAX;
 }
 
 bool suite_read(struct suite *suite, const char *path, const char *root, suite_needs *needs,

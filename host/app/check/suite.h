@@ -27,7 +27,8 @@ struct suite {
     struct roots roots;       /* where its files may lie */
     struct check_case *cases; /* in the order of the file */
     uint32_t count, capacity;
-    uint32_t wrong; /* number of wrong lines */
+    uint32_t wrong;           /* number of wrong lines */
+    size_t expectation_bytes; /* of the expectations of all cases */
     suite_needs *needs;
     /* Gets "FILE:LINE: reason" for each wrong line. */
     void (*say)(void *user, const char *text);
