@@ -1,10 +1,11 @@
 #include "base/key_table.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/random.h>
 
 #include "base/array.h"
-#include "base/hash.h"
 
 struct key_table_slot {
     void *key; /* NULL: empty */
@@ -13,12 +14,59 @@ struct key_table_slot {
     uint32_t value;
 };
 
-/* Mixes the bits of a hash: the lower bits of hash_bytes alone hardly tell numbered names apart. */
-static uint64_t spread(uint64_t hash)
+/* A key of this process, so that no file can name many keys of one hash. Hashes decide nothing but
+   slots, and no result depends on those. */
+static uint64_t secret[2];
+static pthread_once_t secret_made = PTHREAD_ONCE_INIT;
+
+static void make_secret(void)
 {
-    hash = (hash ^ hash >> 33) * UINT64_C(0xff51afd7ed558ccd);
-    hash = (hash ^ hash >> 33) * UINT64_C(0xc4ceb9fe1a85ec53);
-    return hash ^ hash >> 33;
+    if (getrandom(secret, sizeof secret, GRND_NONBLOCK) != (ssize_t)sizeof secret)
+        memset(secret, 0, sizeof secret);
+}
+
+static uint64_t rotate(uint64_t bits, int by)
+{
+    return bits << by | bits >> (64 - by);
+}
+
+static void mix(uint64_t v[4])
+{
+    v[0] += v[1];
+    v[2] += v[3];
+    v[1] = rotate(v[1], 13) ^ v[0];
+    v[3] = rotate(v[3], 16) ^ v[2];
+    v[0] = rotate(v[0], 32) + v[3];
+    v[2] += v[1];
+    v[3] = rotate(v[3], 21) ^ v[0];
+    v[1] = rotate(v[1], 17) ^ v[2];
+    v[2] = rotate(v[2], 32);
+}
+
+/* SipHash-1-3 (J.-P. Aumasson, D. J. Bernstein, SipHash: a fast short-input PRF, 2012), with the
+   length in a word of its own. hash_bytes is no defence: by its steps keys can be made whose hashes
+   are equal from any start. */
+static uint64_t hash_key(const void *key, size_t key_bytes)
+{
+    pthread_once(&secret_made, make_secret);
+    uint64_t v[4] = {
+        secret[0] ^ UINT64_C(0x736f6d6570736575), secret[1] ^ UINT64_C(0x646f72616e646f6d),
+        secret[0] ^ UINT64_C(0x6c7967656e657261), secret[1] ^ UINT64_C(0x7465646279746573)};
+    uint64_t word = key_bytes;
+    for (size_t at = 0;; at += sizeof word) {
+        v[3] ^= word;
+        mix(v);
+        v[0] ^= word;
+        if (at >= key_bytes)
+            break;
+        word = 0;
+        memcpy(&word, (const char *)key + at,
+               key_bytes - at < sizeof word ? key_bytes - at : sizeof word);
+    }
+    v[2] ^= 0xff;
+    for (int i = 0; i < 3; ++i)
+        mix(v);
+    return v[0] ^ v[1] ^ v[2] ^ v[3];
 }
 
 /* The slot that has the key, or the empty slot where it would go. There is always an empty slot. */
@@ -55,7 +103,7 @@ bool key_table_find(const struct key_table *table, const void *key, size_t key_b
 {
     if (!table->count)
         return false;
-    uint64_t hash = spread(hash_bytes(HASH_START, key, key_bytes));
+    uint64_t hash = hash_key(key, key_bytes);
     const struct key_table_slot *slot = find_slot(table, key, key_bytes, hash);
     if (slot->key)
         *value = slot->value;
@@ -70,7 +118,7 @@ bool key_table_add(struct key_table *table, const void *key, size_t key_bytes, u
     if (!copy)
         return false;
     memcpy(copy, key, key_bytes);
-    uint64_t hash = spread(hash_bytes(HASH_START, key, key_bytes));
+    uint64_t hash = hash_key(key, key_bytes);
     *find_slot(table, key, key_bytes, hash) = (struct key_table_slot){copy, key_bytes, hash, value};
     table->count++;
     return true;

@@ -3,6 +3,7 @@
 #include <stdatomic.h>
 
 #include "../child_in_place.h"
+#include "base/hash.h"
 #include "load_model_fixture.h"
 
 static _Atomic uint64_t branches;
@@ -153,6 +154,33 @@ TEST_IN(objects, folder_begin, folder_end)
           "\"shape\":\"sphere\","
           "\"segments\":4,\"rings\":2,\"radius\":1.#1,\"material\":\"m\"}>]}",
           NULL, NULL);
+}
+
+/* 2^bits keys that hash_bytes cannot tell apart, whatever it starts from. */
+static uint64_t work_of_equal_hashes(uint32_t bits)
+{
+    struct key_table table = {0};
+    uint64_t key[32];
+    branches = 0;
+    for (uint32_t i = 0; i < 1u << bits; i++) {
+        uint32_t value;
+        for (uint32_t k = 0; k < 16; k++) {
+            key[2 * k] = (uint64_t)(i >> k & 1) << 63;
+            key[2 * k + 1] = (uint64_t)(i >> k & 1) << 63 ^ (uint64_t)(i >> k & 1) << 34;
+        }
+        assert_true(hash_bytes(1, key, sizeof key) == hash_bytes(1, (uint64_t[32]){0}, sizeof key));
+        assert_false(key_table_find(&table, key, sizeof key, &value));
+        assert_true(key_table_add(&table, key, sizeof key, i));
+        assert_true(key_table_find(&table, key, sizeof key, &value) && value == i);
+    }
+    key_table_finish(&table);
+    return branches;
+}
+
+TEST(names_of_equal_hashes)
+{
+    uint64_t few = work_of_equal_hashes(8);
+    assert_true((double)work_of_equal_hashes(12) < 16.4 * (double)few);
 }
 
 TEST_IN(one_model_under_many_materials, folder_begin, folder_end)
