@@ -174,6 +174,12 @@ whit_result whit_image_load_texts(const char *path, const whit_load_params *para
     return result == WHIT_OK ? image_load_texts(log, path, &foreign, texts, text_count) : result;
 }
 
+uint64_t whit_memory_limit(const whit_load_params *params)
+{
+    uint64_t limit = params->memory_limit_bytes;
+    return limit ? limit : scene_default_memory_limit();
+}
+
 whit_result whit_image_load(const char *path, const whit_load_params *params, const whit_log *log,
                             whit_image **out)
 {

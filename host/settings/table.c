@@ -463,10 +463,10 @@ const struct setting settings_table[] = {
      "", .kind = SETTING_FOLDERS, .offset = offsetof(struct settings, allowed),
      .commands = IN_SCENES, .change = SETTING_HITS, .need = SETTING_NEEDS_SCENE, .trusted = true},
     {"memory-limit", 0, "SIZE",
-     "refuse a scene that takes more on host and device, in bytes\n"
-     "or with K, M, G",
-     "half of the machine's", AT(BYTES, load.memory_limit_bytes), .commands = IN_SCENES,
-     .trusted = true},
+     "refuse what takes more on host and device, in bytes or with\n"
+     "K, M, G",
+     "half of the machine's", AT(BYTES, load.memory_limit_bytes),
+     .commands = IN_SCENES | IN_COMPARE, .trusted = true},
     {"import-limit", 0, "S",
      "seconds of the processor for each file that foreign code\n"
      "reads; ten times that by the clock",

@@ -15,6 +15,8 @@
    open files" where a few more descriptors cannot; NULL: neither. It names the cause where drivers
    and libraries crash or fail with other errors. Safe in signal handlers. */
 const char *whit_shortage(uint64_t room_bytes);
+/* The limit on memory by `params`, in bytes: theirs, or half of this machine's, as for scenes. */
+uint64_t whit_memory_limit(const whit_load_params *params);
 double whit_clock_ms(void);
 double whit_clock_cpu_ms(void); /* processor time of all threads of this process */
 

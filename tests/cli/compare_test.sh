@@ -64,6 +64,11 @@ expect 0 "both are the same" compare "$OUT/d.exr" "$OUT/d.pfm" --metric differin
 expect 0 "difference and FLIP as PNG" compare "$A" "$B" --diff "$OUT/d.png" --flip "$OUT/f.png" -q
 check "they are PNGs" test "$(head -c 4 "$OUT/d.png" | tail -c 3)$(head -c 4 "$OUT/f.png" | tail -c 3)" = PNGPNG
 
+{ printf 'Pf\n512 512\n-1\n' && head -c 1048576 /dev/zero; } >"$OUT/large.pfm"
+refuse 2 "too little memory for FLIP" "large.pfm: comparing pictures of 512 x 512 pixels would take 15 MiB of memory; the \
+limit is 14 MiB (--memory-limit)" compare "$OUT/large.pfm" "$OUT/none.pfm" --memory-limit 14M
+expect 0 "enough for another metric" compare "$OUT/large.pfm" "$OUT/large.pfm" --memory-limit 14M --metric rmse
+
 refuse 2 "other sizes" "a.pfm is 2 x 1, .*tall.pfm is 1 x 2" compare "$A" "$OUT/tall.pfm"
 refuse 2 "no pictures" "A and B are missing" compare
 refuse 2 "one picture" "B is missing" compare "$A"

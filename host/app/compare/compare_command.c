@@ -282,14 +282,40 @@ static whit_result check_pair(struct compare *compare)
     return WHIT_ERROR_INPUT;
 }
 
+/* Checks the memory for both pictures and FLIP by the first one, before the second is decoded. */
+static whit_result check_memory(const struct compare *compare, const whit_load_params *load)
+{
+    enum { FLIP_BYTES = 52 }; /* of a pixel, as image_flip says */
+    const double mebibyte = 1 << 20;
+    const char *path = compare->paths[0];
+    whit_image_info info;
+    whit_image_get_info(compare->images[0], &info);
+    bool flip = !info.integers && !compare->params.no_flip;
+    double bytes = (double)info.width * info.height *
+                   (2.0 * sizeof(float) * info.channels + (flip ? FLIP_BYTES : 0));
+    double limit = (double)whit_memory_limit(load);
+    if (bytes <= limit)
+        return WHIT_OK;
+    cli_error(
+        "%s: comparing pictures of %u x %u pixels would take %.4g MiB of memory; the limit is "
+        "%.4g MiB (--memory-limit)%s",
+        path, info.width, info.height, bytes / mebibyte, limit / mebibyte,
+        flip ? ", and other metrics than FLIP take less (--metric)" : "");
+    return WHIT_ERROR_INPUT;
+}
+
 static whit_result find_out(struct compare *compare)
 {
     const char *folders[SETTING_FOLDERS_MAX];
     whit_load_params load = settings_load(&compare->job.settings, folders);
     whit_result result = WHIT_OK;
     load.cancel = &cli_cancel;
+    compare->params.no_flip =
+        compare->has_metric && compare->metric != METRIC_FLIP && !compare->flip && !compare->json;
     for (int i = 0; result == WHIT_OK && i < 2; ++i) {
         result = whit_image_load(compare->paths[i], &load, &cli_log, &compare->images[i]);
+        if (result == WHIT_OK && i == 0)
+            result = check_memory(compare, &load);
         if (result == WHIT_OK)
             result = job_still_wanted();
     }
@@ -299,8 +325,6 @@ static whit_result find_out(struct compare *compare)
         return result;
     if (compare->info.integers)
         compare->metric = METRIC_DIFFERING;
-    compare->params.no_flip =
-        compare->has_metric && compare->metric != METRIC_FLIP && !compare->flip && !compare->json;
     result = whit_image_compare(compare->images[0], compare->images[1], &compare->params, &cli_log,
                                 &compare->found, &compare->flip_map);
     return result == WHIT_OK ? job_still_wanted() : result;
