@@ -160,6 +160,17 @@ fail:
     return result;
 }
 
+FILE *file_open(const char *path, const char **why)
+{
+    enum reach reach;
+    int fd = roots_open(NULL, path, &reach);
+    FILE *from = fd < 0 ? NULL : fdopen(fd, "r");
+    *why = reach == REACH_NOT_A_FILE ? reach_words(reach) : strerror(errno);
+    if (fd >= 0 && !from)
+        close(fd);
+    return from;
+}
+
 /* The process that writes an unfinished file for `target`, by the file's name as open_sibling makes
    it; 0 where `name` is no such name. */
 static pid_t writer_of(const char *name, const char *target)

@@ -19,6 +19,10 @@
 WHIT_CHECK whit_result file_read(const whit_log *log, const struct roots *roots, const char *path,
                                  uint64_t limit_bytes, uint8_t **data, size_t *size_bytes);
 
+/* Opens a file that the user named, of any size; NULL, with the reason in *why, also for folders,
+   devices and pipes. */
+FILE *file_open(const char *path, const char **why);
+
 /* A file under construction: `stream` writes to a hidden sibling of `path`. Commit renames it over
    `path`; abandon removes it. Call exactly one of the two; both accept a zeroed struct. When the
    process is interrupted, file_abandon_all(), which is safe in a signal handler, removes open

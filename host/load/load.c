@@ -111,11 +111,11 @@ static void tell_refused(const struct roots *roots, const whit_load_params *para
 static whit_result check_path(const whit_log *log, const char *path)
 {
     struct stat info;
-    if (!file_exists(path)) {
-        log_error(log, "%s: there is no such file", path);
+    if (stat(path, &info) != 0) {
+        log_error(log, "%s: %s", path, reach_words(REACH_MISSING));
         return WHIT_ERROR_INPUT;
     }
-    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) {
+    if (S_ISDIR(info.st_mode)) {
         log_error(log, "%s: this is a folder, not a scene or a model", path);
         return WHIT_ERROR_INPUT;
     }

@@ -287,6 +287,8 @@ refuse 2 "no report" "no report of" cost --compare "$CUBE" "$CUBE"
 cp "$CUBE" "$OUT/scene.json"
 refuse 2 "a report in place of the scene" "SCENE and --json name the same file" \
     cost "$OUT/scene.json" $small --json "$OUT/scene.json"
+mkfifo "$OUT/pipe"
+refuse 2 "a pipe to compare" "pipe: cannot read: it is a folder, a device or a pipe" cost --compare "$OUT/pipe" "$J"
 refuse 2 "no file to compare" "$OUT/none: cannot read: No such file" cost --compare "$OUT/none" "$J"
 refuse 2 "JSON to a pipe" "/dev/stdout" cost "$CUBE" --json -
 refuse 2 "a page nowhere" "nowhere/x" cost "$CUBE" --html "$OUT/nowhere/x"

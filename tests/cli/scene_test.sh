@@ -68,6 +68,8 @@ for size in 0 -1 1T 1KK "" 99999999999G; do
     refuse 2 "--memory-limit '$size'" "a number of bytes is needed" scene "$CUBE" --memory-limit "$size"
 done
 
+ln -s loop.obj "$OUT/loop.obj"
+refuse 2 "a link to itself" "loop.obj: Too many levels of symbolic links" scene "$OUT/loop.obj"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 1 2\n' >"$OUT/bare.obj"
 [ -n "$SANITIZED" ] || # its children have no limit
     refuse 2 "an importer that wants too much" "asked for more than .* MiB of memory, half of --memory-limit" \

@@ -184,6 +184,9 @@ refused "a word" 'refused.view:1: `cube.json` is no option' "cube.json"
 refused "a quote" 'refused.view:1: a quote has no end' "--camera 'here"
 refused "another file" 'refused.view:1: --state is nothing to be saved' "--state refused.view"
 refused "two that exclude each other" 'refused.view:.*--time and --frame' "--time 1" "--frame 2"
+mkfifo pipe.view
+expect 2 "a pipe" view "$CUBE" --state pipe.view --frames 1
+check "a pipe: says so" grep -q "pipe.view: cannot be read: it is a folder, a device or a pipe" "$OUT/stderr"
 expect 2 "no such file" view "$CUBE" --state nowhere.view --frames 1
 check "no such file: says so" grep -q "nowhere.view: cannot be read: No such file" "$OUT/stderr"
 

@@ -1,11 +1,11 @@
 /* Reports of `whit cost` as JSON, and back. */
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/cost/cost_json.h"
 #include "app/settings_json.h"
+#include "base/file.h"
 #include "whit/whit_program.h"
 
 /* ---- Writing ---- */
@@ -347,15 +347,20 @@ bool cost_read(json_t *root, struct cost_report *report, char **scene)
 
 bool cost_load_json(const char *path, struct cost_report *report, char **scene)
 {
+    const char *why;
+    bool read = false;
     json_error_t error;
-    json_t *root = json_load_file(path, 0, &error);
-    if (!root && error.line < 0)
-        cli_error("%s: cannot read: %s", path, strerror(errno));
+    FILE *from = file_open(path, &why);
+    json_t *root = from ? json_loadf(from, 0, &error) : NULL;
+    if (!from)
+        cli_error("%s: cannot read: %s", path, why);
     else if (!root)
         cli_error("%s:%d: %s", path, error.line, error.text);
     else if (!cost_read(root, report, scene))
         cli_error("%s: this is no report of `whit cost --json`", path);
     else
-        return true;
-    return false;
+        read = true;
+    if (from)
+        fclose(from);
+    return read;
 }

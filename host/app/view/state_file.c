@@ -5,21 +5,24 @@
 #include <string.h>
 
 #include "app/arguments.h"
+#include "base/file.h"
 
 enum { STATE_BYTES_MAX = 65536, WORDS_MAX = 8, WHERE_BYTES = 600 };
 
 bool state_file_open(struct state_file *file, const char *path, char *said, size_t said_bytes)
 {
+    const char *why;
     *file = (struct state_file){.path = path};
     errno = 0;
-    FILE *from = fopen(path, "r");
+    FILE *from = file_open(path, &why);
     size_t length = 0;
     file->text = malloc(STATE_BYTES_MAX + 1);
     if (from && file->text)
         length = fread(file->text, 1, STATE_BYTES_MAX + 1, from);
     bool failed = !from || !file->text || ferror(from);
     if (failed)
-        snprintf(said, said_bytes, "%s: cannot be read: %s", path, strerror(errno ? errno : EIO));
+        snprintf(said, said_bytes, "%s: cannot be read: %s", path,
+                 from ? strerror(errno ? errno : EIO) : why);
     else if (length > STATE_BYTES_MAX || memchr(file->text, '\0', length))
         snprintf(said, said_bytes, "%s: not a file of settings", path);
     if (from)
