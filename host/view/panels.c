@@ -194,15 +194,11 @@ void panels_switch_effects(struct view *view)
 {
     struct panels *panels = &view->panels;
     panels->effects = !panels->effects;
-    prices_leave(view, panels->measured);
-    panels->measured = NULL;
+    prices_leave(view, &panels->measured);
     bool can = !settings_compiles(&view->settings); /* prices are for whit's own functions */
     if (can && panels->effects && view->scene && view->frame.number > 0)
-        panels->measured = prices_start(&(struct prices_params){.settings = &view->frame.settings,
-                                                                .scene = view->scene,
-                                                                .effects = true,
-                                                                .wake = window_wake,
-                                                                .wake_user = view->window});
+        panels->measured = prices_start(&(struct prices_params){
+            .settings = view->frame.settings, .scene = view->scene, .effects = true});
 }
 
 static void switch_effect(struct view *view, uint32_t index, bool called, bool on)

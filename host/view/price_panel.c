@@ -11,16 +11,17 @@
 static const double SPEND_S = 12.0;
 enum { RANGE = 32 };
 
-void prices_leave(struct view *view, struct prices *prices)
+void prices_leave(struct view *view, struct prices **prices)
 {
     uint32_t at = 0;
-    if (!prices)
+    if (!*prices)
         return;
-    prices_cancel(prices);
+    prices_cancel(*prices);
     while (at < LEAVING_MAX - 1 && view->leaving[at])
         ++at;
     prices_stop(view->leaving[at]); /* if all places are taken, the last one is waited for */
-    view->leaving[at] = prices;
+    view->leaving[at] = *prices;
+    *prices = NULL;
 }
 
 void prices_part(struct view *view)
@@ -38,8 +39,7 @@ void price_switch(struct view *view)
     double spend_s = view->params->spend_s;
     view->prices_open = !view->prices_open;
     if (!view->prices_open) {
-        prices_leave(view, view->prices);
-        view->prices = NULL;
+        prices_leave(view, &view->prices);
     } else if (!view->scene) {
         view->prices_open = false;
     } else if (settings_compiles(&view->settings)) {
@@ -47,12 +47,10 @@ void price_switch(struct view *view)
         view_say(view, "prices are measured against the reference, which has no --shader");
     } else {
         view->prices =
-            prices_start(&(struct prices_params){.settings = &view->frame.settings,
+            prices_start(&(struct prices_params){.settings = view->frame.settings,
                                                  .scene = view->scene,
                                                  .seconds = spend_s > 0.0 ? spend_s : SPEND_S,
-                                                 .strip = true,
-                                                 .wake = window_wake,
-                                                 .wake_user = view->window});
+                                                 .strip = true});
         if (!view->prices)
             view_say(view, "out of memory");
     }

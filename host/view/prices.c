@@ -7,20 +7,15 @@
 
 #include "base/platform.h"
 #include "base/threads.h"
+#include "view/window.h"
 
 enum { REFERENCE_SAMPLES = 16, EFFECT_PIXELS_MAX = 128 * 96, EFFECT_ROUNDS = 9 };
 
 struct prices {
     pthread_mutex_t lock;
     struct thread *thread;
-    struct settings settings;
-    struct scene_ref *scene;
-    double seconds;
-    uint64_t knobs;
-    bool of_effects, has_strip;
+    struct prices_params params; /* holds a reference to its scene */
     volatile bool cancel;
-    void (*wake)(void *user);
-    void *wake_user;
     /* Under the lock. */
     bool finished, news;
     double done, seconds_left;
@@ -39,7 +34,7 @@ static void tell(void *user, double done, double seconds_left, const char *what)
     prices->seconds_left = seconds_left;
     snprintf(prices->what, sizeof prices->what, "%s", what);
     pthread_mutex_unlock(&prices->lock);
-    prices->wake(prices->wake_user);
+    window_wake(NULL);
 }
 
 static void on_message(void *user, whit_log_level level, const char *message)
@@ -57,21 +52,21 @@ static whit_result measure(struct prices *prices, const whit_log *log, whit_devi
 {
     struct cost_request request = {
         .device = device,
-        .scene = prices->scene->scene,
+        .scene = prices->params.scene->scene,
         .accel = accel,
-        .settings = &prices->settings,
+        .settings = &prices->params.settings,
         .cancel = &prices->cancel,
-        .knobs = prices->knobs,
-        .seconds = prices->seconds,
+        .knobs = prices->params.knobs,
+        .seconds = prices->params.seconds,
         .samples_max = REFERENCE_SAMPLES,
         .progress = tell,
         .progress_user = prices,
         .log = log,
     };
-    if (prices->has_strip)
+    if (prices->params.strip)
         cost_strip_ask(&request);
     whit_result result = cost_measure(&request, report);
-    if (*report && prices->has_strip) {
+    if (*report && prices->params.strip) {
         price_strip_init(&prices->strip, *report);
         cost_report_drop_pictures(*report); /* frees memory, as the panel may stay open for long */
     }
@@ -104,7 +99,7 @@ static whit_result begin_effect(void *user, double done, const char *name)
    measuring takes little time. */
 static whit_renderer_params small_picture(const struct prices *prices)
 {
-    whit_renderer_params params = settings_picture(&prices->settings);
+    whit_renderer_params params = settings_picture(&prices->params.settings);
     uint32_t width = params.width, height = params.height;
     for (uint32_t by = 2; (uint64_t)params.width * params.height > EFFECT_PIXELS_MAX; ++by) {
         params.width = (width + by - 1) / by;
@@ -122,7 +117,7 @@ static whit_result measure_effects(struct prices *prices, const whit_log *log, w
                                    whit_accel *accel)
 {
     const whit_renderer_params params = small_picture(prices);
-    struct cost_effects effects = {.scene = prices->scene->scene,
+    struct cost_effects effects = {.scene = prices->params.scene->scene,
                                    .device = device,
                                    .accel = accel,
                                    .params = &params,
@@ -143,20 +138,20 @@ static whit_result measure_effects(struct prices *prices, const whit_log *log, w
 static void run(void *context)
 {
     struct prices *prices = context;
-    const struct settings *settings = &prices->settings;
+    const struct settings *settings = &prices->params.settings;
     const whit_log log = {on_message, prices, WHIT_LOG_ERROR};
     const whit_device_params params = {.selector = settings->device[0] ? settings->device : NULL,
                                        .validation = settings->validation};
     whit_device *device = NULL;
     whit_accel *accel = NULL;
     struct cost_report *report = NULL;
-    tell(prices, 0.0, prices->seconds, "building trees");
-    whit_result result = whit_accel_create(prices->scene->scene, &settings->trees, &accel);
+    tell(prices, 0.0, prices->params.seconds, "building trees");
+    whit_result result = whit_accel_create(prices->params.scene->scene, &settings->trees, &accel);
     if (result == WHIT_OK)
         result = whit_device_create(&params, &log, &device);
     if (result == WHIT_OK)
-        result = prices->of_effects ? measure_effects(prices, &log, device, accel)
-                                    : measure(prices, &log, device, accel, &report);
+        result = prices->params.effects ? measure_effects(prices, &log, device, accel)
+                                        : measure(prices, &log, device, accel, &report);
     whit_device_destroy(device);
     whit_accel_destroy(accel);
     platform_trim_heaps();
@@ -166,7 +161,7 @@ static void run(void *context)
     if (result != WHIT_OK && !report && !prices->what[0])
         snprintf(prices->what, sizeof prices->what, "it could not be measured");
     pthread_mutex_unlock(&prices->lock);
-    prices->wake(prices->wake_user);
+    window_wake(NULL);
 }
 
 struct prices *prices_start(const struct prices_params *params)
@@ -174,15 +169,10 @@ struct prices *prices_start(const struct prices_params *params)
     struct prices *prices = calloc(1, sizeof *prices);
     if (!prices)
         return NULL;
-    prices->settings = *params->settings;
-    prices->settings.paint = PAINT_COLOR; /* prices are those of colours, not of cost views */
-    prices->scene = scene_ref_take(params->scene);
-    prices->seconds = params->seconds;
-    prices->knobs = params->knobs;
-    prices->of_effects = params->effects;
-    prices->has_strip = params->strip;
-    prices->wake = params->wake;
-    prices->wake_user = params->wake_user;
+    prices->params = *params;
+    /* Prices are those of colours, not of cost views. */
+    prices->params.settings.paint = PAINT_COLOR;
+    prices->params.scene = scene_ref_take(params->scene);
     pthread_mutex_init(&prices->lock, NULL);
     prices->thread = thread_start(run, prices);
     if (prices->thread)
@@ -204,7 +194,7 @@ void prices_stop(struct prices *prices)
     thread_join(prices->thread);
     cost_report_destroy(prices->report);
     price_strip_finish(&prices->strip);
-    scene_ref_drop(prices->scene);
+    scene_ref_drop(prices->params.scene);
     pthread_mutex_destroy(&prices->lock);
     free(prices);
 }
@@ -242,7 +232,7 @@ void prices_get_state(struct prices *prices, struct prices_state *state)
         .seconds_left = prices->seconds_left,
         .report = prices->finished ? prices->report : NULL,
         .strip = &prices->strip,
-        .settings = prices->settings,
+        .settings = prices->params.settings,
     };
     memcpy(state->what, prices->what, sizeof state->what);
     pthread_mutex_unlock(&prices->lock);

@@ -18,16 +18,15 @@ struct effect_price {
 };
 
 struct prices_params {
-    const struct settings *settings;
+    struct settings settings;
     struct scene_ref *scene;
-    double seconds;           /* time to spend, roughly */
-    uint64_t knobs;           /* bits 1 << index in knob_table; 0: all knobs */
-    bool strip;               /* also draws the pictures of cost_strip */
-    bool effects;             /* measures effects in place of knobs; `seconds` is ignored */
-    void (*wake)(void *user); /* called from the thread when there is something new */
-    void *wake_user;
+    double seconds; /* time to spend, roughly */
+    uint64_t knobs; /* bits 1 << index in knob_table; 0: all knobs */
+    bool strip;     /* also draws the pictures of cost_strip */
+    bool effects;   /* measures effects in place of knobs; `seconds` is ignored */
 };
-/* Starts measuring. NULL: no memory, or no thread. */
+/* Starts measuring; the thread wakes the window when there is something new. NULL: no memory, or no
+   thread. */
 struct prices *prices_start(const struct prices_params *params);
 /* Stops measuring, waits, frees; NULL is fine. */
 void prices_stop(struct prices *prices);

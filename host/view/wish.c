@@ -149,12 +149,10 @@ static void measure(struct view *view)
     if (wish->figures && choose_as_before(view))
         return;
     wish->prices =
-        prices_start(&(struct prices_params){.settings = &usual,
+        prices_start(&(struct prices_params){.settings = usual,
                                              .scene = view->scene,
                                              .seconds = spend_s > 0.0 ? spend_s : SPEND_S,
-                                             .knobs = knobs_of_light(),
-                                             .wake = window_wake,
-                                             .wake_user = view->window});
+                                             .knobs = knobs_of_light()});
     wish->stage = WISH_MEASURES;
     wish->text[0] = '\0';
     if (!wish->prices || !wish->figures)
@@ -208,8 +206,7 @@ static void try_choice(struct view *view)
 
 static void begin_again(struct view *view, bool fresh)
 {
-    prices_leave(view, view->wish.prices);
-    view->wish.prices = NULL;
+    prices_leave(view, &view->wish.prices);
     view->wish.stage = WISH_WAITS;
     view->wish.fresh = fresh;
     view->wish.known = false;
