@@ -154,10 +154,8 @@ int main(int argc, char **argv)
         .name = "bench", .takes_many = true, .options = bench_options, .settings = IN_BENCH};
     static struct bench bench;
     struct cli_reader reader;
-    if (argc < 4) {
-        cli_error("whit-bench is called by `whit bench BENCH`");
-        return EXIT_USAGE;
-    }
+    if (argc < 4)
+        return CLI_FAIL(EXIT_USAGE, "whit-bench is called by `whit bench BENCH`");
     cli_catch_interrupts();
     bench.whit = argv[1];
     cli_reader_init(&reader, &command, argc - 2, argv + 2);

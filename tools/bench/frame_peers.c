@@ -64,8 +64,7 @@ whit_result peers_find_against(struct peers *peers, struct table *table)
     free(whole);
     if (ask_version(table->bench, peers->against, "whit ", line))
         return WHIT_OK;
-    cli_error("--against %s: is no whit that runs", cli_shown(against));
-    return WHIT_ERROR_INPUT;
+    return CLI_FAIL(WHIT_ERROR_INPUT, "--against %s: is no whit that runs", cli_shown(against));
 }
 
 void peers_find(struct peers *peers, struct table *table, bool wants_pov)

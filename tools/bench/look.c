@@ -77,10 +77,8 @@ static whit_result run_once(struct look *look, const char *path)
         return result;
     double first_ms = number_at(look, "first", "measure", "first_ms") - start_ms;
     double width = number_at(look, "first", "frame", "width");
-    if (first_ms <= 0.0 || width <= 0.0) {
-        cli_error("`whit view` did not tell its figures");
-        return WHIT_ERROR_FAILED;
-    }
+    if (first_ms <= 0.0 || width <= 0.0)
+        return CLI_FAIL(WHIT_ERROR_FAILED, "`whit view` did not tell its figures");
     sample_add(&look->first, first_ms);
     sample_add(&look->whole, number_at(look, "whole", "measure", "clock_ms") - start_ms);
     look->narrowest = look->narrowest > 0.0 && look->narrowest < width ? look->narrowest : width;
@@ -132,10 +130,9 @@ whit_result bench_look(struct bench *bench)
     const struct bench_request *ask = &bench->ask;
     struct table table;
     struct look look = {.bench = bench, .table = &table};
-    if (ask->name_count == 0) {
-        cli_error("`whit bench look` takes the files of models that whit has not drawn yet");
-        return WHIT_ERROR_USAGE;
-    }
+    if (ask->name_count == 0)
+        return CLI_FAIL(WHIT_ERROR_USAGE,
+                        "`whit bench look` takes the files of models that whit has not drawn yet");
     table_begin(&table, bench, "look", heads, true, OTHERS + ask->name_count * ask->runs);
     table_say(&table,
               "Times by the clock from the start of `whit view` until the window shows the first "

@@ -51,8 +51,8 @@ static whit_result read_answer(struct peer *peer, char *answer, size_t bytes, co
     answer[strcspn(answer, "\n")] = 0;
     if (strncmp(answer, word, strlen(word)) == 0 || strncmp(answer, "none", 4) == 0)
         return cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
-    cli_error("`%s` answers `%s`", programs[peer->kind], cli_shown(answer));
-    return WHIT_ERROR_FAILED;
+    return CLI_FAIL(WHIT_ERROR_FAILED, "`%s` answers `%s`", programs[peer->kind],
+                    cli_shown(answer));
 }
 
 static whit_result WHIT_PRINTF(4, 5)
@@ -72,10 +72,9 @@ static whit_result start(struct peer *peer, const struct bench *bench, const cha
 {
     int ends[2];
     if (!find_program(peer->kind, peer->program, sizeof peer->program) ||
-        socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-        cli_error("no `%s`, or no socket for it: %s", programs[peer->kind], strerror(errno));
-        return WHIT_ERROR_MEMORY;
-    }
+        socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+        return CLI_FAIL(WHIT_ERROR_MEMORY, "no `%s`, or no socket for it: %s", programs[peer->kind],
+                        strerror(errno));
     peer->process =
         (struct process){.program = peer->program, .folder = bench->folder, .socket = ends[1]};
     process_add(&peer->process, programs[peer->kind], triangles,

@@ -128,10 +128,8 @@ static whit_result prepare(struct model *model, const char *path)
     const whit_renderer_params params = {.width = 16, .height = 16, .cancel = &cli_cancel};
     name_model(model, path);
     whit_result result = bench_load(path, &model->loaded);
-    if (result == WHIT_OK && model->loaded.info.triangle_count == 0) {
-        cli_error("%s: has no triangles, which rays could meet", path);
-        return WHIT_ERROR_INPUT;
-    }
+    if (result == WHIT_OK && model->loaded.info.triangle_count == 0)
+        return CLI_FAIL(WHIT_ERROR_INPUT, "%s: has no triangles, which rays could meet", path);
     if (result == WHIT_OK)
         result = whit_accel_create(model->loaded.scene, NULL, &model->accel);
     if (result == WHIT_OK)
@@ -245,8 +243,7 @@ static whit_result look_for(const char *path)
 {
     if (access(path, R_OK) == 0)
         return WHIT_OK;
-    cli_error("%s: cannot read: %s", path, strerror(errno));
-    return WHIT_ERROR_INPUT;
+    return CLI_FAIL(WHIT_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
 }
 
 whit_result bench_rays(struct bench *bench)

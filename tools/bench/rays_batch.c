@@ -147,8 +147,7 @@ static whit_result read_hits(const char *path, whit_hit *hits, uint64_t count)
         fclose(from);
     if (whole)
         return WHIT_OK;
-    cli_error("%s: cannot read", path);
-    return WHIT_ERROR_INPUT;
+    return CLI_FAIL(WHIT_ERROR_INPUT, "%s: cannot read", path);
 }
 
 /* Lets a peer write its hits to a file, and compares them. */

@@ -38,10 +38,8 @@ static int run_bench(int argc, char **argv)
 {
     char whit[2048], bench[2200];
     char **arguments = calloc((size_t)argc + 3, sizeof *arguments);
-    if (!arguments) {
-        cli_error("out of memory");
-        return EXIT_USAGE;
-    }
+    if (!arguments)
+        return CLI_FAIL(EXIT_USAGE, "out of memory");
     if (find_programs(whit, bench)) {
         arguments[0] = bench;
         arguments[1] = whit;

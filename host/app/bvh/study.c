@@ -24,9 +24,8 @@ static whit_result check_same(const struct study_row *row, const whit_accel_info
                 row->info.depth == info->depth && row->info.sah_cost == info->sah_cost;
     if (same)
         return WHIT_OK;
-    cli_error("%s: two builds gave two trees: SAH costs %.9g and %.9g", row->name,
-              row->info.sah_cost, info->sah_cost);
-    return WHIT_ERROR_STATUS;
+    return CLI_FAIL(WHIT_ERROR_STATUS, "%s: two builds gave two trees: SAH costs %.9g and %.9g",
+                    row->name, row->info.sah_cost, info->sah_cost);
 }
 
 /* Builds a row once; the first tree is kept. */

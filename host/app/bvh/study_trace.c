@@ -145,8 +145,7 @@ static bool tracing_alloc(struct tracing *tracing)
         calloc((size_t)STUDY_KINDS * study->row_count * study->run_count, sizeof *tracing->rates);
     if (all && tracing->hits && tracing->rates)
         return true;
-    cli_error("out of memory");
-    return false;
+    return CLI_FAIL(false, "out of memory");
 }
 
 static void tracing_free(struct tracing *tracing)

@@ -15,10 +15,8 @@ static whit_result begin_scene(struct job *job, const char *scene)
 {
     if (!scene)
         return whit_scene_small(&cli_log_errors, &job->scene);
-    if (strlen(scene) >= sizeof job->settings.scene) {
-        cli_error("%s: the path is too long", scene);
-        return WHIT_ERROR_USAGE;
-    }
+    if (strlen(scene) >= sizeof job->settings.scene)
+        return CLI_FAIL(WHIT_ERROR_USAGE, "%s: the path is too long", scene);
     strcpy(job->settings.scene, scene);
     return job_load(job);
 }

@@ -37,8 +37,7 @@ static bool make_beside(const char *folder, char beside[PATH_BYTES])
     umask(mask);
     if (mkdtemp(beside) && chmod(beside, 0777 & ~mask) == 0)
         return true;
-    cli_error("%s: cannot be made: %s", folder, strerror(errno));
-    return false;
+    return CLI_FAIL(false, "%s: cannot be made: %s", folder, strerror(errno));
 }
 
 /* Joins `root` and the first `bytes` of `name` into `path`; both are short enough to fit. */
@@ -56,10 +55,8 @@ static bool make_folders(const char *root, const char *name, char path[PATH_BYTE
 {
     for (const char *slash = strchr(name, '/'); slash; slash = strchr(slash + 1, '/')) {
         join(path, root, name, (size_t)(slash - name));
-        if (mkdir(path, 0777) != 0 && errno != EEXIST) {
-            cli_error("%s: cannot be made: %s", path, strerror(errno));
-            return false;
-        }
+        if (mkdir(path, 0777) != 0 && errno != EEXIST)
+            return CLI_FAIL(false, "%s: cannot be made: %s", path, strerror(errno));
     }
     join(path, root, name, strlen(name));
     return true;
@@ -100,10 +97,9 @@ static bool put_in_place(const char *beside, const char *folder)
     if (rename(beside, folder) == 0)
         return true;
     bool there = errno == ENOTEMPTY || errno == EEXIST || errno == ENOTDIR || errno == EBUSY;
-    cli_error("%s: %s%s", folder, there ? "is there already" : "cannot be made: ",
-              there ? ", and nothing is written over: `--into FOLDER` names another"
-                    : strerror(errno));
-    return false;
+    return CLI_FAIL(false, "%s: %s%s", folder, there ? "is there already" : "cannot be made: ",
+                    there ? ", and nothing is written over: `--into FOLDER` names another"
+                          : strerror(errno));
 }
 
 static int write_folder(const char *folder, const whit_shader_file *files, uint32_t count)

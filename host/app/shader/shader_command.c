@@ -190,10 +190,8 @@ static int print_json(const whit_shader *shader, const struct attempt *attempt)
 static whit_result dump_text(const char *folder, const char *name, const char *ending, char *text)
 {
     char path[4096];
-    if (!text) {
-        cli_error("%s%s: its text cannot be had", name, ending);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!text)
+        return CLI_FAIL(WHIT_ERROR_MEMORY, "%s%s: its text cannot be had", name, ending);
     snprintf(path, sizeof path, "%s/%s%s", folder, name, ending);
     whit_result result = file_write_whole(&cli_log, path, text, strlen(text));
     whit_memory_destroy(text);
@@ -223,10 +221,8 @@ static whit_result dump(const whit_shader *shader, const char *folder)
 {
     whit_result result = WHIT_OK;
     bool more = true;
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        cli_error("%s: cannot be made: %s", folder, strerror(errno));
-        return WHIT_ERROR_OUTPUT;
-    }
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+        return CLI_FAIL(WHIT_ERROR_OUTPUT, "%s: cannot be made: %s", folder, strerror(errno));
     for (uint32_t i = 0; result == WHIT_OK && more; ++i)
         result = dump_kernel(shader, i, folder, &more);
     return result;

@@ -22,14 +22,10 @@ whit_result ray_file_open(const char *path, struct ray_file *file)
     struct stat info;
     errno = 0;
     *file = (struct ray_file){.path = path, .stream = fopen(path, "rb")};
-    if (!file->stream || fstat(fileno(file->stream), &info) != 0) {
-        cli_error("%s: cannot read: %s", path, strerror(errno));
-        return WHIT_ERROR_INPUT;
-    }
-    if (S_ISDIR(info.st_mode)) {
-        cli_error("%s: cannot read: %s", path, strerror(EISDIR));
-        return WHIT_ERROR_INPUT;
-    }
+    if (!file->stream || fstat(fileno(file->stream), &info) != 0)
+        return CLI_FAIL(WHIT_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
+    if (S_ISDIR(info.st_mode))
+        return CLI_FAIL(WHIT_ERROR_INPUT, "%s: cannot read: %s", path, strerror(EISDIR));
     if (!S_ISREG(info.st_mode))
         return WHIT_OK;
     if ((uint64_t)info.st_size % sizeof(whit_ray) != 0)
@@ -43,10 +39,9 @@ whit_result ray_file_read(struct ray_file *file, whit_ray *rays, uint64_t max, u
     errno = 0;
     *count = 0;
     size_t bytes = fread(rays, 1, (size_t)max * sizeof *rays, file->stream);
-    if (ferror(file->stream)) {
-        cli_error("%s: cannot read: %s", file->path, strerror(errno ? errno : EIO));
-        return WHIT_ERROR_INPUT;
-    }
+    if (ferror(file->stream))
+        return CLI_FAIL(WHIT_ERROR_INPUT, "%s: cannot read: %s", file->path,
+                        strerror(errno ? errno : EIO));
     if (bytes % sizeof *rays != 0)
         return refuse_size(file, file->read_count * sizeof *rays + bytes);
     *count = bytes / sizeof *rays;
