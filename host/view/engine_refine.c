@@ -194,6 +194,8 @@ static whit_result finish_round(struct session *session, struct engine_refine *r
 {
     size_t bytes = bytes_of(refine);
     *frame = refine->base;
+    frame->scene = scene_ref_take(session->scene);
+    frame->shader = shader_ref_take(session->shader);
     whit_result result = show_sum(refine, kept, session, frame);
     if (result != WHIT_OK)
         return result;
@@ -234,13 +236,8 @@ static whit_result draw_next(struct session *session, struct engine_refine *refi
         whit_refine_get_info(refine->refine, &info);
     if (info.samples < ROUND * refine->samples) /* else the round only has to be shown */
         result = draw_part(session, refine, kept, &info);
-    if (result == WHIT_OK && info.samples == ROUND * refine->samples) {
-        struct scene_ref *scene = scene_ref_take(session->scene);
-        struct shader_ref *shader = shader_ref_take(session->shader);
+    if (result == WHIT_OK && info.samples == ROUND * refine->samples)
         result = finish_round(session, refine, kept, frame);
-        frame->scene = scene;
-        frame->shader = shader;
-    }
     return result;
 }
 
@@ -250,12 +247,7 @@ static whit_result draw_next(struct session *session, struct engine_refine *refi
 static void show_some(const struct engine_task *task)
 {
     struct engine_frame frame;
-    struct session *session = task->session;
-    struct scene_ref *scene = scene_ref_take(session->scene);
-    struct shader_ref *shader = shader_ref_take(session->shader);
-    whit_result result = finish_round(session, task->refine, task->single, &frame);
-    frame.scene = scene;
-    frame.shader = shader;
+    whit_result result = finish_round(task->session, task->refine, task->single, &frame);
     if (result == WHIT_OK)
         engine_show_samples(task, &frame);
     else
