@@ -440,8 +440,6 @@ whit_result engine_create(const struct engine_params *params, struct engine **ou
         return WHIT_ERROR_MEMORY;
     pthread_condattr_t monotonic;
     engine->params = *params;
-    if (engine->params.sessions > ENGINE_SESSIONS_MAX)
-        engine->params.sessions = ENGINE_SESSIONS_MAX;
     pthread_condattr_init(&monotonic);
     pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
     pthread_mutex_init(&engine->lock, NULL);

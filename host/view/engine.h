@@ -14,7 +14,6 @@ struct engine_params {
     double budget_ms;         /* time for a picture while something moves; 0: 1000 / 30 */
     bool refine, times;       /* see engine_set_rest */
     bool time_stages;         /* see engine_time_stages */
-    uint32_t sessions;        /* most sessions kept at a time, 2..8; 0: 4 */
     void (*wake)(void *user); /* called from any thread: something can be taken. May be NULL */
     void *wake_user;
     whit_shader_compiler *compiler; /* for settings.shader; its log is silent. NULL: no shaders */

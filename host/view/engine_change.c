@@ -116,7 +116,6 @@ void engine_keep(struct engine_kept *kept, const struct engine_frame *frame)
     engine_kept_finish(kept);
     *kept = (struct engine_kept){.settings = frame->settings,
                                  .stats = frame->stats,
-                                 .accel = frame->accel,
                                  .width = frame->width,
                                  .height = frame->height,
                                  .color = colors ? whit_image_share(frame->color) : NULL,

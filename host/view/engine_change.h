@@ -8,7 +8,6 @@
 struct engine_kept {
     struct settings settings;
     whit_stats stats;
-    whit_accel_info accel;
     uint32_t width, height;
     /* The images of the frame, shared with it. `color`: NULL if costs were painted. `plain` and
        `cuts`: NULL where the frame has none. `ids`: NULL if nothing is kept. */

@@ -14,7 +14,7 @@
 struct engine_job;
 struct engine_task;
 
-enum { ENGINE_SESSIONS_MAX = 8, ENGINE_LANES = 2 };
+enum { ENGINE_SESSIONS_MAX = 4, ENGINE_LANES = 2 };
 
 /* Qualities of a picture. They are drawn one after the other; a quality is skipped if the next one
    is quick enough. */

@@ -73,11 +73,6 @@ static void end_reload(struct engine *engine, const char *why)
     engine_wake(engine);
 }
 
-static void measure_times(struct engine *engine)
-{
-    end_reload(engine, engine_turns_measure(engine, &engine->reloading.turns, &engine->reload.ms));
-}
-
 /* ---- When ---- */
 
 bool engine_reload_step(struct engine *engine)
@@ -92,7 +87,7 @@ bool engine_reload_step(struct engine *engine)
         start_flip(engine);
         return true;
     }
-    measure_times(engine);
+    end_reload(engine, engine_turns_measure(engine, &reloading->turns, &engine->reload.ms));
     return true;
 }
 

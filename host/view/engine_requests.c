@@ -114,7 +114,7 @@ void engine_get_status(struct engine *engine, struct engine_status *status)
     pthread_mutex_lock(&engine->lock);
     const struct engine_job *job = engine->job;
     *status = (struct engine_status){
-        .stage = job && !job->is_spare ? (enum session_stage)atomic_load(&job->progress.stage)
+        .stage = job && !job->is_spare ? (enum session_stage)atomic_load(&job->session->stage)
                                        : SESSION_DONE,
         .stage_ms = job ? whit_clock_ms() - job->start_ms : 0.0,
         .makes_spare = job && job->is_spare,

@@ -8,7 +8,7 @@
 #include "view/engine_sessions.h"
 #include "whit/whit_program.h"
 
-enum { SESSIONS_DEFAULT = 4, SESSIONS_LARGE = 2, LOST_MAX = 2 };
+enum { SESSIONS_LARGE = 2, LOST_MAX = 2 };
 static const uint64_t LARGE_SCENE = 1000000; /* triangles */
 
 /* ---- Sessions in the making ---- */
@@ -65,7 +65,7 @@ static whit_result reload(struct engine_job *job, const struct session_parts *pa
     struct session *session = job->session;
     session->step = keep_preview;
     session->step_user = job;
-    whit_result result = session_reload(session, &job->settings, parts, &job->progress);
+    whit_result result = session_reload(session, &job->settings, parts);
     session->step = NULL;
     return result;
 }
@@ -78,9 +78,9 @@ static void run_job(void *context)
                                         job->is_spare};
     const whit_log log = {session_message, job->session, WHIT_LOG_WARNING};
     const whit_log scene_log = {scene_message, engine, WHIT_LOG_WARNING};
-    whit_result result = job->reloads ? reload(job, &parts)
-                                      : session_open(job->session, &job->settings, &parts, &log,
-                                                     &scene_log, &job->progress);
+    whit_result result = job->reloads
+                             ? reload(job, &parts)
+                             : session_open(job->session, &job->settings, &parts, &log, &scene_log);
     pthread_mutex_lock(&engine->lock);
     job->result = result;
     job->done = true;
@@ -196,6 +196,7 @@ bool engine_start_job(struct engine *engine, const struct settings *settings, bo
         session->ready = session->cancel = false;
         session->error[0] = session->errors[0] = '\0';
         session->owner = engine;
+        atomic_store(&session->stage, SESSION_SHADER);
         session->made = ++engine->jobs;
         job->session = session;
         job->reloads = version != NULL;
@@ -245,30 +246,16 @@ static void forget_session(struct engine *engine, struct session *session)
     pthread_mutex_lock(&engine->lock);
 }
 
-static void forget_if(struct engine *engine, struct session *session)
-{
-    for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i) {
-        if (engine->sessions[i] == session && session)
-            forget_session(engine, session);
-    }
-}
-
-static uint32_t sessions_max(const struct engine *engine, const struct session *newest)
-{
-    uint32_t max = engine->params.sessions ? engine->params.sessions : SESSIONS_DEFAULT;
-    bool large = newest->scene->info.triangle_count > LARGE_SCENE;
-    return large && max > SESSIONS_LARGE ? SESSIONS_LARGE : max;
-}
-
 /* Makes room for one more session: drops those that are not shown, least recently used first. */
 static void make_room(struct engine *engine, const struct session *newest)
 {
+    bool large = newest->scene->info.triangle_count > LARGE_SCENE;
     for (;;) {
         struct session *oldest = find_oldest(engine, NULL);
         uint32_t count = 0;
         for (uint32_t i = 0; i < ENGINE_SESSIONS_MAX; ++i)
             count += engine->sessions[i] != NULL;
-        if (count < sessions_max(engine, newest) || !oldest)
+        if (count < (large ? SESSIONS_LARGE : ENGINE_SESSIONS_MAX) || !oldest)
             return;
         forget_session(engine, oldest);
     }
@@ -343,5 +330,5 @@ void engine_reap_job(struct engine *engine)
 void engine_lose_device(struct engine *engine, struct session *session)
 {
     engine->device_lost = ++engine->lost > LOST_MAX;
-    forget_if(engine, session);
+    forget_session(engine, session);
 }

@@ -16,7 +16,6 @@ struct engine_job {
     bool reloads;  /* the session has drawn before, with another version of the shader */
     bool is_spare; /* a session for the next version of the shader, made in advance */
     struct engine_frame preview; /* the first step of its picture; without pixels: none */
-    struct session_progress progress;
     struct thread *thread;
     struct engine *engine;
     double start_ms;

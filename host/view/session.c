@@ -56,12 +56,6 @@ const char *session_stage_name(enum session_stage stage)
     return names[stage <= SESSION_DONE ? stage : SESSION_DONE];
 }
 
-static void tell(struct session_progress *progress, enum session_stage stage)
-{
-    if (progress)
-        atomic_store(&progress->stage, (int)stage);
-}
-
 WHIT_PRINTF(2, 3)
 static void add_error(struct session *session, const char *format, ...)
 {
@@ -107,11 +101,9 @@ static whit_result load_shader(struct session *session, whit_shader_compiler *co
         return WHIT_ERROR_MEMORY;
     atomic_init(&ref->refs, 1);
     ref->settings = *settings;
-    double start_ms = whit_clock_ms();
     whit_result result = whit_shader_load_stages(
         compiler, settings->shader[0] ? settings->shader : NULL,
         settings->stages[0] ? settings->stages : NULL, settings->trust, &ref->shader);
-    ref->compile_ms = whit_clock_ms() - start_ms;
     if (result != WHIT_OK) {
         log_shader_errors(session, compiler);
         free(ref);
@@ -135,9 +127,7 @@ static whit_result load(struct session *session, const whit_log *log)
         return WHIT_ERROR_MEMORY;
     atomic_init(&ref->refs, 1);
     ref->settings = *settings;
-    double start_ms = whit_clock_ms();
     whit_result result = whit_scene_load(settings->scene, &params, log, &ref->scene);
-    ref->load_ms = whit_clock_ms() - start_ms;
     if (strlen(refused.folder) < sizeof session->refused)
         memcpy(session->refused, refused.folder, strlen(refused.folder) + 1);
     if (result != WHIT_OK) {
@@ -207,7 +197,7 @@ static whit_result warm_up(struct session *session, bool few_pixels)
 
 whit_result session_open(struct session *session, const struct settings *settings,
                          const struct session_parts *parts, const whit_log *log,
-                         const whit_log *scene_log, struct session_progress *progress)
+                         const whit_log *scene_log)
 {
     const whit_device_params device = {.selector =
                                            settings->device[0] ? session->settings.device : NULL,
@@ -218,30 +208,30 @@ whit_result session_open(struct session *session, const struct settings *setting
     session->shader = shader_ref_take(parts->shader);
     whit_device_opening *opening = whit_device_open_begin(&device, &session->log);
     whit_result result = WHIT_OK;
-    tell(progress, SESSION_SHADER);
+    atomic_store(&session->stage, SESSION_SHADER);
     if (!session->shader && parts->compiler && settings_compiles(settings))
         result = load_shader(session, parts->compiler);
-    tell(progress, SESSION_LOADING);
+    atomic_store(&session->stage, SESSION_LOADING);
     if (result == WHIT_OK && !session->scene)
         result = load(session, scene_log);
     if (result == WHIT_OK)
         result = settings_choose_camera(&session->settings, session->scene->scene);
-    tell(progress, SESSION_BUILDING);
+    atomic_store(&session->stage, SESSION_BUILDING);
     if (result == WHIT_OK)
         result = build(session);
-    tell(progress, SESSION_OPENING);
+    atomic_store(&session->stage, SESSION_OPENING);
     if (result != WHIT_OK)
         whit_device_open_abandon(opening);
     else if (opening)
         result = whit_device_open_end(opening, &session->device);
     else
         result = whit_device_create(&device, &session->log, &session->device);
-    tell(progress, SESSION_COMPILING);
+    atomic_store(&session->stage, SESSION_COMPILING);
     if (result == WHIT_OK) {
         whit_device_get_info(session->device, &session->device_info);
         result = warm_up(session, parts->awaits_version);
     }
-    tell(progress, SESSION_DONE);
+    atomic_store(&session->stage, SESSION_DONE);
     return result;
 }
 
@@ -266,7 +256,7 @@ static whit_result draw_step(struct session *session, const whit_renderer_params
 }
 
 whit_result session_reload(struct session *session, const struct settings *settings,
-                           const struct session_parts *parts, struct session_progress *progress)
+                           const struct session_parts *parts)
 {
     enum { FIRST_STEP = 8 };
     const struct settings settings_before = session->settings;
@@ -274,7 +264,7 @@ whit_result session_reload(struct session *session, const struct settings *setti
     whit_result result = WHIT_OK;
     session->settings = *settings;
     session->shader = shader_ref_take(parts->shader);
-    tell(progress, SESSION_SHADER);
+    atomic_store(&session->stage, SESSION_SHADER);
     if (!session->shader)
         result = load_shader(session, parts->compiler);
     if (result != WHIT_OK) {
@@ -282,7 +272,7 @@ whit_result session_reload(struct session *session, const struct settings *setti
         session->shader = before;
         return result;
     }
-    tell(progress, SESSION_COMPILING);
+    atomic_store(&session->stage, SESSION_COMPILING);
     double start_ms = whit_clock_ms();
     result = settings_choose_camera(&session->settings, session->scene->scene);
     if (result == WHIT_OK) {
@@ -297,7 +287,7 @@ whit_result session_reload(struct session *session, const struct settings *setti
     }
     session->compile_ms = whit_clock_ms() - start_ms;
     shader_ref_drop(before);
-    tell(progress, SESSION_DONE);
+    atomic_store(&session->stage, SESSION_DONE);
     return result;
 }
 

@@ -13,7 +13,6 @@ struct scene_ref {
     whit_scene *scene;
     whit_scene_info info;
     struct settings settings; /* settings that it was loaded for */
-    double load_ms;
 };
 struct scene_ref *scene_ref_take(struct scene_ref *ref); /* NULL is fine */
 void scene_ref_drop(struct scene_ref *ref);              /* NULL is fine */
@@ -24,7 +23,6 @@ struct shader_ref {
     whit_shader *shader;
     whit_shader_info info;
     struct settings settings; /* settings that it was compiled for */
-    double compile_ms;        /* from GLSL to SPIR-V */
 };
 struct shader_ref *shader_ref_take(struct shader_ref *ref); /* NULL is fine */
 void shader_ref_drop(struct shader_ref *ref);               /* NULL is fine */
@@ -64,6 +62,7 @@ struct session {
     /* Folder of a file that the scene names but may not read; "": none. */
     char refused[SETTING_PATH_BYTES];
     bool ready;
+    _Atomic(int) stage; /* enum session_stage: what is being made; read by any thread */
     whit_accel_info accel_info;
     whit_device_info device_info;
     double build_ms, compile_ms; /* building trees; compiling, up to the first pixels */
@@ -75,11 +74,6 @@ struct session {
     /* Number of the engine's job that has made the session, or adapted it to another version of the
        shader. */
     uint64_t made;
-};
-
-/* The progress of session_open; other threads read it meanwhile. */
-struct session_progress {
-    _Atomic(int) stage; /* enum session_stage */
 };
 
 /* Parts that a session is made from: the scene and the shader of its settings if they are loaded
@@ -98,14 +92,13 @@ whit_renderer_params session_picture(const struct session *session);
    except for `cancel` and its owner's fields. Call session_close also after a failure. */
 WHIT_CHECK whit_result session_open(struct session *session, const struct settings *settings,
                                     const struct session_parts *parts, const whit_log *log,
-                                    const whit_log *scene_log, struct session_progress *progress);
+                                    const whit_log *scene_log);
 /* Adapts a session to another version of the shader. `settings` differ from the session's only in
    what its renderer can change. Compiles that version, and draws the first step of the picture,
    since drivers compile then; session->step gets it. If the shader is wrong, the session stays as
    it was. If its kernels cannot be made, the session has no renderer and has to be closed. */
 WHIT_CHECK whit_result session_reload(struct session *session, const struct settings *settings,
-                                      const struct session_parts *parts,
-                                      struct session_progress *progress);
+                                      const struct session_parts *parts);
 /* Frees everything. Returns the number of messages that the validation layers had about its
    device. */
 uint32_t session_close(struct session *session);
