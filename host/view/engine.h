@@ -195,7 +195,4 @@ bool engine_is_refined(struct engine *engine);
 /* Waits until a picture or something else can be taken, at most `ms`. For tests and replays. */
 void engine_wait(struct engine *engine, double ms);
 
-/* The index of the aov of the frame's shader that settings.aov names; UINT32_MAX: there is none. */
-uint32_t engine_find_aov(const struct engine_frame *frame);
-
 #endif

@@ -116,11 +116,6 @@ static whit_result paint_costs(const struct engine_task *task, struct engine_fra
     return result;
 }
 
-uint32_t engine_find_aov(const struct engine_frame *frame)
-{
-    return shader_ref_find_aov(frame->shader, frame->settings.aov);
-}
-
 /* Keeps a copy of the picture, to which samples can be added, and draws edges and grid over it. */
 static whit_result draw_over(whit_renderer *renderer, const whit_overlay *overlay,
                              struct engine_frame *frame)
@@ -137,7 +132,7 @@ static whit_result paint_colors(const struct engine_task *task, struct engine_fr
 {
     const whit_overlay overlay = settings_overlay(&task->settings);
     whit_renderer *renderer = task->session->renderer;
-    uint32_t aov = engine_find_aov(frame);
+    uint32_t aov = shader_ref_find_aov(frame->shader, frame->settings.aov);
     whit_result result = whit_renderer_image(
         renderer, aov == UINT32_MAX ? WHIT_AOV_COLOR : (whit_aov)(WHIT_AOV_SHADER + aov),
         &frame->color);
@@ -262,7 +257,7 @@ whit_result engine_draw_step(const struct engine_task *task, const whit_step *st
         return WHIT_ERROR_MEMORY;
     whit_result result = whit_image_create(step->width, step->height, 4, step->rgba, &frame->color);
     if (result == WHIT_OK) {
-        if (engine_find_aov(frame) == UINT32_MAX)
+        if (shader_ref_find_aov(frame->shader, frame->settings.aov) == UINT32_MAX)
             whit_image_display_as(frame->color, &params);
         whit_image_display_bytes(frame->color, frame->rgba);
         whit_renderer_get_stats(task->session->renderer, &frame->stats);

@@ -58,9 +58,11 @@ static bool is_black(const struct engine_frame *frame)
 
 static void draw_aov(const struct engine_frame *frame)
 {
-    if (frame->settings.aov[0] && frame->settings.paint == PAINT_COLOR)
-        ui_text(engine_find_aov(frame) != UINT32_MAX ? "aov %s" : "no `//@ aov %s`: colours",
-                frame->settings.aov);
+    const char *aov = frame->settings.aov;
+    if (aov[0] && frame->settings.paint == PAINT_COLOR)
+        ui_text(shader_ref_find_aov(frame->shader, aov) != UINT32_MAX ? "aov %s"
+                                                                      : "no `//@ aov %s`: colours",
+                aov);
 }
 
 static void draw_figures(const struct view *view)

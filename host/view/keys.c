@@ -49,9 +49,8 @@ static void next_cost_view(struct view *view)
 static void next_aov(struct view *view)
 {
     const struct shader_ref *shown = view->shaders.shown;
-    uint32_t count = shown ? shown->info.aov_count : 0, next = 0;
-    for (uint32_t i = 0; view->settings.aov[0] && i < count; ++i)
-        next = strcmp(shown->info.aovs[i], view->settings.aov) == 0 ? i + 1 : next;
+    uint32_t count = shown ? shown->info.aov_count : 0;
+    uint32_t next = shader_ref_find_aov(shown, view->settings.aov) + 1; /* 0: no such aov */
     if (count == 0)
         view_say(view, "there is no `//@ aov` of a shader");
     snprintf(view->settings.aov, sizeof view->settings.aov, "%s",

@@ -38,8 +38,7 @@ void measure_begin(struct view *view)
 /* Counts a picture that is shown for the first time. */
 static void count_new(struct view_measure *measure, const struct engine_frame *frame, double now_ms)
 {
-    const whit_stats *s = &frame->stats;
-    double render_ms = s->render_device_ms >= 0.0 ? s->render_device_ms : s->render_ms;
+    double render_ms = engine_drawn_ms(&frame->stats);
     measure->number = frame->number;
     if (frame->whole)
         note(&measure->whole, render_ms);

@@ -237,9 +237,8 @@ static whit_result keep_shot(struct view *view)
     whit_result result = rgba ? swapchain_read(view->swapchain, rgba, bytes) : WHIT_ERROR_MEMORY;
     if (result == WHIT_OK)
         result = whit_image_create_display(info.width, info.height, rgba, &image);
-    const whit_log log = {view->log.fn, view->log.user, view->log.level};
     if (result == WHIT_OK)
-        result = whit_image_save(image, view->shot, NULL, 0, &log);
+        result = whit_image_save(image, view->shot, NULL, 0, &view->log);
     whit_image_destroy(image);
     free(rgba);
     view->shot[0] = '\0';
@@ -444,7 +443,7 @@ static whit_result open_all(struct view *view)
         .budget_ms = 1e3 / params->settings.fps_goal,
         .wake = window_wake,
         .compiler = params->compiler,
-        .log = {view->log.fn, view->log.user, view->log.level},
+        .log = view->log,
     };
     whit_result result = palette_init(&view->palette);
     if (result == WHIT_OK)
@@ -488,7 +487,7 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
     if (!view)
         return WHIT_ERROR_MEMORY;
     platform_share_heaps();
-    view->log = (whit_log){log->fn, log->user, log->level};
+    view->log = *log;
     view->params = params;
     view->settings = params->settings;
     view->hud = HUD_SMALL;
