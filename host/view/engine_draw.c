@@ -100,7 +100,6 @@ void engine_plan(const struct engine *engine, const struct engine_lane *lane,
 static whit_result paint_costs(const struct engine_task *task, struct engine_frame *frame)
 {
     const struct settings *settings = &task->settings;
-    whit_image *heat = NULL;
     whit_view view = (whit_view)(settings->paint - PAINT_DEPTH);
     whit_result result = whit_renderer_cost_image(
         task->session->renderer, view, (whit_ray_kind)settings->paint_rays, &frame->color);
@@ -108,12 +107,7 @@ static whit_result paint_costs(const struct engine_task *task, struct engine_fra
         return result;
     frame->scale =
         settings->paint_scale > 0.0 ? settings->paint_scale : whit_image_heat_scale(frame->color);
-    const whit_heat_params params = {.scale = frame->scale};
-    result = whit_image_heat(frame->color, &params, &heat);
-    if (result == WHIT_OK)
-        result = palette_cut(heat, frame->width, frame->height, frame->rgba);
-    whit_image_destroy(heat);
-    return result;
+    return palette_heat(frame->color, frame->scale, frame->rgba);
 }
 
 /* Keeps a copy of the picture, to which samples can be added, and draws edges and grid over it. */

@@ -7,37 +7,49 @@
 
 #include "view/ui.h"
 
-whit_result palette_cut(const whit_image *heat, uint32_t width, uint32_t height, uint8_t *rgba)
+whit_result palette_cut(const whit_image *image, uint32_t left, uint32_t top, uint32_t width,
+                        uint32_t height, uint8_t *rgba)
 {
     whit_image_info info;
-    whit_image_get_info(heat, &info);
+    whit_image_get_info(image, &info);
     uint8_t *all = malloc((size_t)info.width * info.height * 4);
     if (!all)
         return WHIT_ERROR_MEMORY;
-    whit_image_display_bytes(heat, all);
-    size_t left = (info.width - width) / 2;
+    whit_image_display_bytes(image, all);
     for (uint32_t y = 0; y < height; ++y)
-        memcpy(rgba + (size_t)y * width * 4, all + ((size_t)y * info.width + left) * 4,
+        memcpy(rgba + (size_t)y * width * 4, all + ((size_t)(top + y) * info.width + left) * 4,
                (size_t)width * 4);
     free(all);
     return WHIT_OK;
 }
 
+/* The heat map has its legend below, and may be wider on both sides. */
+whit_result palette_heat(const whit_image *values, double scale, uint8_t *rgba)
+{
+    const whit_heat_params params = {.scale = scale};
+    whit_image_info own, whole;
+    whit_image *heat = NULL;
+    whit_result result = whit_image_heat(values, &params, &heat);
+    if (result != WHIT_OK)
+        return result;
+    whit_image_get_info(values, &own);
+    whit_image_get_info(heat, &whole);
+    result = palette_cut(heat, (whole.width - own.width) / 2, 0, own.width, own.height, rgba);
+    whit_image_destroy(heat);
+    return result;
+}
+
 whit_result palette_init(struct palette *palette)
 {
     float ramp[PALETTE_COLORS];
-    whit_image *values = NULL, *heat = NULL;
-    const whit_heat_params params = {.scale = 1.0};
+    whit_image *values = NULL;
     for (int i = 0; i < PALETTE_COLORS; ++i)
         ramp[i] = (float)i / (PALETTE_COLORS - 1);
     palette->colors[PALETTE_COLORS] = 0xFFFF00FFu;
     whit_result result = whit_image_create(PALETTE_COLORS, 1, 1, ramp, &values);
     if (result == WHIT_OK)
-        result = whit_image_heat(values, &params, &heat);
-    if (result == WHIT_OK)
-        result = palette_cut(heat, PALETTE_COLORS, 1, (uint8_t *)palette->colors);
+        result = palette_heat(values, 1.0, (uint8_t *)palette->colors);
     whit_image_destroy(values);
-    whit_image_destroy(heat);
     return result;
 }
 

@@ -13,10 +13,14 @@ struct palette {
 };
 WHIT_CHECK whit_result palette_init(struct palette *palette);
 
-/* Cuts `width` x `height` colours out of a heat map, which has a legend below and may be wider on
-   both sides; `rgba` has room for 4 bytes a pixel. */
-WHIT_CHECK whit_result palette_cut(const whit_image *heat, uint32_t width, uint32_t height,
-                                   uint8_t *rgba);
+/* Cuts `width` x `height` pixels out of an image as displayed, from column `left` and row `top` on;
+   `rgba` has room for 4 bytes a pixel. */
+WHIT_CHECK whit_result palette_cut(const whit_image *image, uint32_t left, uint32_t top,
+                                   uint32_t width, uint32_t height, uint8_t *rgba);
+
+/* Paints `values`, of one channel, as whit_image_heat does, without its legend; `rgba` has room for
+   4 bytes a pixel. */
+WHIT_CHECK whit_result palette_heat(const whit_image *values, double scale, uint8_t *rgba);
 
 /* Converts `values`, one a pixel, to colours; `rgba` has room for one word a pixel. */
 void palette_paint(const struct palette *palette, const float *values, uint64_t count, double scale,

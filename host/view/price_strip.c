@@ -2,8 +2,8 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "view/palette.h"
 #include "view/ui.h"
 
 enum { LINE = 32 };
@@ -11,23 +11,12 @@ enum { LINE = 32 };
 /* Cuts the crop out of the picture; NULL: there is no picture, or no memory. */
 static uint32_t *cut(const whit_image *picture, const struct cost_crop *crop)
 {
-    whit_image_info info;
-    if (!picture)
-        return NULL;
-    whit_image_get_info(picture, &info);
-    uint32_t *all = malloc((size_t)info.width * info.height * sizeof *all);
-    uint32_t *part = malloc((size_t)crop->width * crop->height * sizeof *part);
-    if (all && part) {
-        whit_image_display_bytes(picture, (uint8_t *)all);
-        for (uint32_t y = 0; y < crop->height; ++y)
-            memcpy(part + (size_t)y * crop->width,
-                   all + (size_t)(crop->y + y) * info.width + crop->x, crop->width * sizeof *part);
-    } else {
-        free(part);
-        part = NULL;
-    }
-    free(all);
-    return part;
+    uint32_t *part = picture ? malloc((size_t)crop->width * crop->height * sizeof *part) : NULL;
+    if (part && palette_cut(picture, crop->x, crop->y, crop->width, crop->height,
+                            (uint8_t *)part) == WHIT_OK)
+        return part;
+    free(part);
+    return NULL;
 }
 
 void price_strip_init(struct price_strip *strip, const struct cost_report *report)
