@@ -13,35 +13,24 @@
 
 enum { SCENES_MAX = 200 };
 
-/* The folder, with a slash at its end; NULL: there is none. free(). */
-static char *state_folder(void)
-{
-    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
-    if (state && state[0] == '/')
-        return string_format("%s/whit/", state);
-    return home && home[0] == '/' ? string_format("%s/.local/state/whit/", home) : NULL;
-}
-
-/* Makes the folder, and those above it. */
-static void make_folder(const char *folder)
-{
-    char *path = string_copy(folder);
-    for (char *at = path ? path + 1 : NULL; at && *at; ++at) {
-        if (*at != '/')
-            continue;
-        *at = '\0';
-        (void)mkdir(path, 0700); /* if it fails, writing fails too */
-        *at = '/';
-    }
-    free(path);
-}
-
+/* NULL: there is no folder for it. free(). */
 static char *file_path(void)
 {
-    char *folder = state_folder();
-    char *path = folder ? string_format("%scameras.json", folder) : NULL;
-    free(folder);
-    return path;
+    static const char name[] = "whit/cameras.json";
+    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+    if (state && state[0] == '/')
+        return string_format("%s/%s", state, name);
+    return home && home[0] == '/' ? string_format("%s/.local/state/%s", home, name) : NULL;
+}
+
+/* Makes the folders that the file lies in. */
+static void make_folders(char *path)
+{
+    for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        (void)mkdir(path, 0700); /* if it fails, writing fails too */
+        *slash = '/';
+    }
 }
 
 /* Loads the file. One that is damaged counts as empty, as it holds nothing of value. NULL: no
@@ -99,9 +88,9 @@ static void save(const whit_log *log, const char *path, const json_t *all)
 
 void memory_keep(const whit_log *log, const char *scene, const char *camera)
 {
-    char *folder = state_folder(), *path = file_path(), *key = scene_key(scene);
-    if (folder && path && key) {
-        make_folder(folder);
+    char *path = file_path(), *key = scene_key(scene);
+    if (path && key) {
+        make_folders(path);
         json_t *all = load(path);
         json_object_del(all, key); /* the scene is then added as the newest */
         if (camera[0])
@@ -110,7 +99,6 @@ void memory_keep(const whit_log *log, const char *scene, const char *camera)
         save(log, path, all);
         json_decref(all);
     }
-    free(folder);
     free(path);
     free(key);
 }
