@@ -180,7 +180,7 @@ static void draw_settings(struct view *view)
         ui_separator();
         draw_choices(view, CHOICE_EXPERTS);
         if (view->wish.stage != WISH_NONE && ui_button("choose again"))
-            wish_again(view);
+            wish_again(view, true);
         draw_files(view);
         if (ui_button("close##settings"))
             view->panels.settings = false;

@@ -26,12 +26,6 @@ static void set_usual(struct settings *settings)
     settings_set_light(settings, &usual);
 }
 
-static void set_choice(const struct cost_choice *choice, struct settings *settings)
-{
-    set_usual(settings);
-    cost_choice_apply(choice, settings);
-}
-
 /* Whether the user has changed settings since they were chosen. */
 static bool is_left(const struct view *view)
 {
@@ -61,7 +55,8 @@ static void take_choice(struct view *view, double predicted_ms)
         snprintf(wish->text, sizeof wish->text, "what is usual");
     wish->predicted_ms = predicted_ms;
     wish->predicted_error = choice->error;
-    set_choice(choice, &view->settings);
+    set_usual(&view->settings);
+    cost_choice_apply(choice, &view->settings);
     wish->settings = view->settings;
     wish->took_ms = 0.0;
     wish->stage = WISH_TRIES;
@@ -204,18 +199,13 @@ static void try_choice(struct view *view)
     save(view);
 }
 
-static void begin_again(struct view *view, bool fresh)
+void wish_again(struct view *view, bool fresh)
 {
     prices_leave(view, &view->wish.prices);
     view->wish.stage = WISH_WAITS;
     view->wish.fresh = fresh;
     view->wish.known = false;
     view->dirty = true;
-}
-
-void wish_again(struct view *view)
-{
-    begin_again(view, true);
 }
 
 void wish_begin(struct view *view)
@@ -232,7 +222,7 @@ void wish_step(struct view *view)
     if (wish->stage == WISH_NONE || !view->scene)
         return;
     if (wish->stage != WISH_WAITS && wish->scene != view->scene)
-        begin_again(view, view->params->fresh);
+        wish_again(view, view->params->fresh);
     if (wish->stage == WISH_WAITS && view->frame.whole && !view->status.drawing &&
         view->measure.number == view->frame.number)
         measure(view);

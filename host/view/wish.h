@@ -39,8 +39,9 @@ struct view;
 void wish_begin(struct view *view);
 /* Call it in each iteration of the viewer's loop. */
 void wish_step(struct view *view);
-/* Measures and chooses again, for the picture in the window. */
-void wish_again(struct view *view);
+/* Measures and chooses again, for the picture in the window; `fresh`: without figures of earlier
+   runs. */
+void wish_again(struct view *view, bool fresh);
 /* Whether there is nothing to wait for. */
 bool wish_is_still(const struct view *view);
 void wish_draw(const struct view *view); /* draws the wish's lines of the HUD */
