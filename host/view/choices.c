@@ -156,14 +156,12 @@ uint32_t choice_changes(const struct settings *a, const struct settings *b,
 {
     uint32_t count = 0;
     if (strcmp(a->scene, b->scene) != 0 || a->reload != b->reload) {
-        changes[count].name = "scene";
-        changes[count].painted = false;
+        changes[count] = (struct choice_change){.name = "scene"};
         say_scene(a, changes[count].a);
         say_scene(b, changes[count++].b);
     }
     if (!settings_same_shader(a, b)) {
-        changes[count].name = "shader";
-        changes[count].painted = false;
+        changes[count] = (struct choice_change){.name = "shader"};
         say_shader(a, changes[count].a);
         say_shader(b, changes[count++].b);
     }

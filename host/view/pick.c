@@ -348,19 +348,15 @@ static bool has_moved_on(const struct view *view)
     return !settings_same_place(&view->probe.settings, &view->settings);
 }
 
-/* The place of the panel, as ui_window_begin takes it: never over the pixel. */
-struct place {
-    float x, y, height;
-};
-
 /* Puts the panel beside the pixel if there is room, else above or below it, as high as possible. */
-static struct place place_panel(const struct view *view, const whit_probe_report *r, float height)
+static struct pick_place place_panel(const struct view *view, const whit_probe_report *r,
+                                     float height)
 {
     const whit_renderer_params *p = &view->settings.picture;
     float scale = ui_scale(view->ui), margin = 24.0f;
     float left = (float)r->x / scale, right = ((float)p->width - (float)r->x) / scale;
     float above = (float)r->y / scale, below = ((float)p->height - (float)r->y) / scale;
-    struct place place = {.x = left < right ? 1.0f : 0.0f, .y = 1.0f, .height = height};
+    struct pick_place place = {.x = left < right ? 1.0f : 0.0f, .y = 1.0f, .height = height};
     if (fmaxf(left, right) >= PANEL_WIDTH + margin)
         return place;
     place.y = above < below ? 1.0f : 0.0f;
@@ -385,11 +381,10 @@ static void draw_panel(struct view *view)
     uint32_t lines = count_lines(r);
     float rows = (float)(count < ROWS_AT_FIRST ? count : ROWS_AT_FIRST) +
                  (float)(lines < LINES_AT_FIRST ? lines : LINES_AT_FIRST);
-    struct place place = place_panel(view, r, 192.0f + 17.0f * rows);
-    bool moves = place.x != view->pick_place[0] || place.y != view->pick_place[1] ||
-                 place.height < view->pick_place[2];
-    const float now[3] = {place.x, place.y, place.height};
-    memcpy(view->pick_place, now, sizeof now);
+    const struct pick_place place = place_panel(view, r, 192.0f + 17.0f * rows);
+    const struct pick_place *was = &view->pick_place;
+    bool moves = place.x != was->x || place.y != was->y || place.height < was->height;
+    view->pick_place = place;
     if (ui_window_begin("Pixel", place.x, place.y, PANEL_WIDTH, place.height, moves,
                         &view->picked)) {
         char why[WHIT_PROBE_WHY_BYTES];

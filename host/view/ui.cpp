@@ -571,14 +571,6 @@ whit_result ui_result(const struct ui *ui)
     return ui->result;
 }
 
-static void place(float x, float y, ImGuiCond when)
-{
-    ImVec2 window = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(inside() + x * (window.x - 2.0f * inside()),
-                                   inside() + y * (window.y - 2.0f * inside())),
-                            when, ImVec2(x, y));
-}
-
 // The corner of the window for a panel of this size.
 static ImVec2 anchor_of(const ImVec2 &size, float x, float y)
 {
@@ -629,11 +621,12 @@ bool ui_window_begin(const char *title, float x, float y, float width, float hei
                 ImGuiWindowFlags_HorizontalScrollbar;
     layout.current = find_panel(title);
     layout.wraps = layout.grows = false;
-    place(x, y, moves ? ImGuiCond_Always : ImGuiCond_Appearing);
+    const ImGuiCond when = moves ? ImGuiCond_Always : ImGuiCond_Appearing;
+    ImGui::SetNextWindowPos(anchor_of(ImVec2(0.0f, 0.0f), x, y), when, ImVec2(x, y));
     ImVec2 window = ImGui::GetIO().DisplaySize;
     float w = width * line_scale, h = height * line_scale, high = window.y - 2.0f * inside();
     ImGui::SetNextWindowSize(ImVec2(w < panel_width() ? w : panel_width(), h < high ? h : high),
-                             moves ? ImGuiCond_Always : ImGuiCond_Appearing);
+                             when);
     ImGui::SetNextWindowContentSize(ImVec2(
         w - 2.0f * ImGui::GetStyle().WindowPadding.x - ImGui::GetStyle().ScrollbarSize, 0.0f));
     return ImGui::Begin(title, open, flags);

@@ -60,12 +60,14 @@ struct view {
     struct engine_frame frame;
     struct engine_status status;
     struct engine_probe probe; /* the picked pixel; number 0: none */
-    float pick_place[3];       /* last place of its panel: x, y, height */
-    bool picked;               /* the panel of the pixel is open */
-    double pick_x, pick_y;     /* the pixel that was asked for last */
-    uint64_t pick_frame;       /* number of the picture for which it was last asked again */
-    bool focus;                /* the camera frames the hit once the probe is there */
-    struct scene_ref *scene;   /* scene of `frame` */
+    struct pick_place {
+        float x, y, height;
+    } pick_place;            /* last place of its panel, as ui_window_begin takes it */
+    bool picked;             /* the panel of the pixel is open */
+    double pick_x, pick_y;   /* the pixel that was asked for last */
+    uint64_t pick_frame;     /* number of the picture for which it was last asked again */
+    bool focus;              /* the camera frames the hit once the probe is there */
+    struct scene_ref *scene; /* scene of `frame` */
 
     struct prices *prices;               /* NULL: none are measured */
     struct prices *leaving[LEAVING_MAX]; /* told to stop, not ended yet */
