@@ -76,8 +76,15 @@ whit_result bench_load(const char *path, struct bench_scene *scene)
     return result == WHIT_OK && cli_cancel ? WHIT_ERROR_CANCELLED : result;
 }
 
+whit_result bench_load_trees(const char *path, struct bench_scene *scene)
+{
+    whit_result result = bench_load(path, scene);
+    return result == WHIT_OK ? whit_accel_create(scene->scene, NULL, &scene->accel) : result;
+}
+
 void bench_unload(struct bench_scene *scene)
 {
+    whit_accel_destroy(scene->accel);
     whit_scene_destroy(scene->scene);
     *scene = (struct bench_scene){0};
 }
@@ -117,11 +124,7 @@ static whit_result write_json(struct bench *bench)
     }
     document_count(settings, "runs", ask->runs);
     document_put(root, "tables", json_incref(bench->tables));
-    char *text = document_line(root);
-    whit_result result =
-        text ? file_write_whole(&cli_log, ask->json, text, strlen(text)) : WHIT_ERROR_MEMORY;
-    free(text);
-    return result;
+    return document_save_text(document_line(root), ask->json);
 }
 
 static int work(struct bench *bench)

@@ -34,8 +34,11 @@ WHIT_CHECK whit_result bench_write(const struct bench *bench, const char *name, 
 struct bench_scene {
     whit_scene *scene;
     whit_scene_info info;
+    whit_accel *accel; /* made by bench_load_trees */
 };
 WHIT_CHECK whit_result bench_load(const char *path, struct bench_scene *scene);
+/* Also builds its trees, as whit does by itself. */
+WHIT_CHECK whit_result bench_load_trees(const char *path, struct bench_scene *scene);
 void bench_unload(struct bench_scene *scene);
 
 /* ---- The benches ---- */

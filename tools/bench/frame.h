@@ -33,7 +33,6 @@ struct frame {
     uint32_t small_width, small_height; /* size of a small picture whose time is subtracted; 0:
                                            none */
     struct bench_scene loaded;
-    whit_accel *accel;
     whit_reference *reference;
     struct peer peer;
     enum frame_side sides[FRAME_SIDES]; /* the sides that draw */

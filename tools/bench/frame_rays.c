@@ -16,11 +16,6 @@ struct own_rays {
     uint32_t count, capacity;
 };
 
-static bool add_ray(struct own_rays *to, uint32_t light, const whit_ray *ray)
-{
-    return ARRAY_PUSH(to->rays, to->count, to->capacity, (struct own_ray){light, *ray});
-}
-
 /* Makes a ray: shadow rays end at their light, other rays do not end. */
 static whit_ray ray_of(const struct frame *frame, const whit_probe_ray *from)
 {
@@ -57,9 +52,10 @@ static whit_result take_pixel(struct frame *frame, uint32_t x, uint32_t y, struc
     for (uint32_t i = 0; room && i < count; ++i) {
         if (rays[i].end == WHIT_PROBE_DEPTH || rays[i].end == WHIT_PROBE_BAILOUT)
             continue;
-        const whit_ray ray = ray_of(frame, &rays[i]);
         bool is_shadow = rays[i].kind == WHIT_RAY_SHADOW;
-        room = add_ray(is_shadow ? shadow : closest, is_shadow ? rays[i].light : 0, &ray);
+        struct own_rays *to = is_shadow ? shadow : closest;
+        const struct own_ray ray = {is_shadow ? rays[i].light : 0, ray_of(frame, &rays[i])};
+        room = ARRAY_PUSH(to->rays, to->count, to->capacity, ray);
     }
     whit_memory_destroy(rays);
     return !room ? WHIT_ERROR_MEMORY : cli_cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;

@@ -23,11 +23,9 @@ static whit_renderer_params params_of(const struct frame *frame)
 whit_result frame_prepare(struct frame *frame)
 {
     const whit_renderer_params params = params_of(frame);
-    whit_result result = bench_load(frame->path, &frame->loaded);
+    whit_result result = bench_load_trees(frame->path, &frame->loaded);
     if (result == WHIT_OK)
-        result = whit_accel_create(frame->loaded.scene, NULL, &frame->accel);
-    if (result == WHIT_OK)
-        result = whit_reference_create(frame->accel, &params, 0, &frame->reference);
+        result = whit_reference_create(frame->loaded.accel, &params, 0, &frame->reference);
     return result;
 }
 
@@ -35,7 +33,6 @@ void frame_finish(struct frame *frame)
 {
     peer_end(&frame->peer);
     whit_reference_destroy(frame->reference);
-    whit_accel_destroy(frame->accel);
     bench_unload(&frame->loaded);
 }
 
@@ -151,7 +148,7 @@ static whit_result device_bytes(const struct frame *frame, const whit_renderer_p
     whit_renderer *renderer = NULL;
     whit_stats stats = {0};
     whit_result result =
-        whit_renderer_create(frame->bench->device, frame->accel, params, &renderer);
+        whit_renderer_create(frame->bench->device, frame->loaded.accel, params, &renderer);
     if (result == WHIT_OK) {
         result = whit_renderer_render(renderer);
         whit_renderer_get_stats(renderer, &stats);

@@ -127,14 +127,12 @@ static whit_result prepare(struct model *model, const char *path)
     const struct bench_request *ask = &model->bench->ask;
     const whit_renderer_params params = {.width = 16, .height = 16, .cancel = &cli_cancel};
     name_model(model, path);
-    whit_result result = bench_load(path, &model->loaded);
+    whit_result result = bench_load_trees(path, &model->loaded);
     if (result == WHIT_OK && model->loaded.info.triangle_count == 0)
         return CLI_FAIL(WHIT_ERROR_INPUT, "%s: has no triangles, which rays could meet", path);
     if (result == WHIT_OK)
-        result = whit_accel_create(model->loaded.scene, NULL, &model->accel);
-    if (result == WHIT_OK)
-        result =
-            whit_renderer_create(model->bench->device, model->accel, &params, &model->renderer);
+        result = whit_renderer_create(model->bench->device, model->loaded.accel, &params,
+                                      &model->renderer);
     if (result == WHIT_OK)
         result =
             study_camera_rays(model->loaded.scene, ask->width, ask->height, true, &model->camera);
@@ -187,7 +185,6 @@ static whit_result run_model(struct table *table, const char *path)
     for (int kind = 0; kind < PEER_KINDS; ++kind)
         peer_end(&model->peers[kind]);
     whit_renderer_destroy(model->renderer);
-    whit_accel_destroy(model->accel);
     bench_unload(&model->loaded);
     free(model->camera.rays);
     free(model->hits);

@@ -35,7 +35,6 @@ struct model {
     struct table *table;
     char name[40]; /* made from the file's name, with only characters that file names allow */
     struct bench_scene loaded;
-    whit_accel *accel;
     whit_renderer *renderer;
     struct peer peers[PEER_KINDS];
     bool has_peer[PEER_KINDS];

@@ -87,11 +87,11 @@ struct saves {
     struct bench *bench;
     struct reached reached[MUSTS];
     struct bench_scene loaded;
-    whit_accel *accel;
     whit_shader_compiler *compiler;
     whit_log silent;
     char path[BENCH_PATH];
     uint64_t numbers; /* state of splitmix64 */
+    bool with_errors; /* the rounds in a window end with saves of an error */
     double start_ms;
     whit_shader *looping[2];
     whit_renderer *renderers[2]; /* with fuel; trusted, without fuel */
@@ -163,12 +163,12 @@ static enum hand hand_of(const struct saves *s, uint32_t at)
                                    : HAND_ERROR;
 }
 
-static uint32_t count_rounds(const struct saves *s, bool errors)
+static uint32_t count_rounds(const struct saves *s)
 {
     uint32_t count = ALONE + s->bench->ask.runs + 1;
     while (hand_of(s, count) != HAND_ERROR)
         ++count;
-    return count + (errors ? s->bench->ask.runs : 0);
+    return count + (s->with_errors ? s->bench->ask.runs : 0);
 }
 
 static bool is_held(enum hand hand)
@@ -190,16 +190,12 @@ static void write_hand(FILE *to, const struct saves *s, enum hand hand)
 
 /* Writes the replay. Each state `saved` tells the bench to save again, and has the figures of the
    save before; `moved` has the figures of the mouse moves. */
-static whit_result write_replay(const struct saves *s, bool errors)
+static void put_replay(FILE *to, const void *user)
 {
-    char *text = NULL;
-    size_t bytes = 0;
+    const struct saves *s = user;
     uint32_t first = 0, refused = 0;
-    FILE *to = open_memstream(&text, &bytes);
-    if (!to)
-        return WHIT_ERROR_MEMORY;
     fprintf(to, "clock real\nmove 20 20\nstill\nstate ready\n");
-    for (uint32_t i = 0; i < count_rounds(s, errors); ++i) {
+    for (uint32_t i = 0; i < count_rounds(s); ++i) {
         enum hand hand = hand_of(s, i);
         if (is_held(hand))
             write_hand(to, s, hand);
@@ -211,10 +207,6 @@ static whit_result write_replay(const struct saves *s, bool errors)
             fprintf(to, "still\n");
         fprintf(to, "state saved\nmove 20 20\n"); /* the move ends the measurement of the change */
     }
-    whit_result result =
-        fclose(to) == 0 ? bench_write(s->bench, "replay", text, bytes) : WHIT_ERROR_MEMORY;
-    free(text);
-    return result;
 }
 
 static whit_result start_viewer(const struct saves *s, const char *scene, const struct edited *edit,
@@ -228,7 +220,6 @@ static whit_result start_viewer(const struct saves *s, const char *scene, const 
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
         return WHIT_ERROR_OUTPUT;
     setsockopt(ends[0], SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    bench_file(bench, "replay", viewer->replay);
     bench_file(bench, "messages", viewer->err);
     viewer->process =
         (struct process){.program = bench->whit, .socket = ends[1], .err = viewer->err};
@@ -308,27 +299,28 @@ static whit_result watch_round(struct saves *s, struct viewer *viewer, const str
 
 /* Runs all rounds for one function in one window. */
 static whit_result watch_saves(struct saves *s, struct viewer *viewer, const struct edited *edit,
-                               bool errors, struct save_times *times)
+                               struct save_times *times)
 {
     json_t *state = read_state(viewer);
     whit_result result = state ? WHIT_OK : WHIT_ERROR_FAILED;
     json_decref(state);
-    for (uint32_t i = 0; result == WHIT_OK && i < count_rounds(s, errors); ++i)
+    for (uint32_t i = 0; result == WHIT_OK && i < count_rounds(s); ++i)
         result = watch_round(s, viewer, edit, i, times);
     return result;
 }
 
-static whit_result view_saves(struct saves *s, const char *scene, uint32_t edit, bool errors,
+static whit_result view_saves(struct saves *s, const char *scene, uint32_t edit,
                               struct save_times *times)
 {
     struct viewer viewer = {.states = NULL};
-    whit_result result = write_replay(s, errors);
+    bench_file(s->bench, "replay", viewer.replay);
+    whit_result result = document_save_written(viewer.replay, put_replay, s);
     if (result == WHIT_OK)
         result = save(s, edits[edit].text);
     if (result == WHIT_OK)
         result = start_viewer(s, scene, &edits[edit], &viewer);
     if (result == WHIT_OK)
-        result = watch_saves(s, &viewer, &edits[edit], errors, times);
+        result = watch_saves(s, &viewer, &edits[edit], times);
     if (viewer.states)
         fclose(viewer.states);
     if (result != WHIT_OK && viewer.process.pid > 0)
@@ -412,7 +404,8 @@ static whit_result measure_saves(struct saves *s, struct table *table, const cha
     whit_result result = WHIT_OK;
     for (uint32_t i = 0; result == WHIT_OK && i < EDITS; ++i) {
         struct save_times times = {.first = {.count = 0}};
-        result = view_saves(s, path, i, i == 0, &times);
+        s->with_errors = i == 0;
+        result = view_saves(s, path, i, &times);
         if (result == WHIT_OK) {
             put_row(table, scene, &edits[i], &times);
             keep_reached(s, scene, i, &times);
@@ -443,7 +436,7 @@ static whit_result measure_fuel(struct saves *s, struct table *table, const char
         if (result != WHIT_OK)
             break;
         const whit_renderer_params params = params_of(s, s->looping[i]);
-        result = whit_renderer_create(s->bench->device, s->accel, &params, &s->renderers[i]);
+        result = whit_renderer_create(s->bench->device, s->loaded.accel, &params, &s->renderers[i]);
     }
     if (result == WHIT_OK)
         result = sample_in_turns(2, s->bench->ask.runs + 1, draw_loops, s);
@@ -499,7 +492,7 @@ static whit_result run_tests(struct saves *s, whit_shader **shader, whit_rendere
         result = whit_shader_compile_tests(s->compiler, *shader);
     const whit_renderer_params params = params_of(s, *shader);
     if (result == WHIT_OK)
-        result = whit_renderer_create(s->bench->device, s->accel, &params, renderer);
+        result = whit_renderer_create(s->bench->device, s->loaded.accel, &params, renderer);
     if (result == WHIT_OK)
         result = whit_renderer_run_tests(*renderer, results, &compile_ms, &run_ms);
     for (int i = 0; result == WHIT_OK && i < TESTS * CHECKS_EACH; ++i) {
@@ -550,15 +543,11 @@ static whit_result run_scene(struct saves *s, struct table *table, const char *s
     if (result == WHIT_OK && reached_of(s, scene))
         reached_of(s, scene)->error_ms = quantile(&s->errors, 0.95);
     if (result == WHIT_OK)
-        result = bench_load(path, &s->loaded);
-    if (result == WHIT_OK)
-        result = whit_accel_create(s->loaded.scene, NULL, &s->accel);
+        result = bench_load_trees(path, &s->loaded);
     if (result == WHIT_OK)
         result = measure_fuel(s, table, scene);
     if (result == WHIT_OK)
         result = measure_tests(s, table, scene);
-    whit_accel_destroy(s->accel);
-    s->accel = NULL;
     bench_unload(&s->loaded);
     return result;
 }
@@ -632,7 +621,7 @@ whit_result bench_shaders(struct bench *bench)
     s->numbers = (uint64_t)time(NULL);
     bench_file(bench, "edited.glsl", s->path);
     table_begin(&table, bench, "shaders", heads, false,
-                count * (EDITS * count_rounds(s, false) + ask->runs));
+                count * (EDITS * count_rounds(s) + ask->runs));
     table_say(
         &table,
         "From a save to the first changed picture on the screen and to the whole one, in the "

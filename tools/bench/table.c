@@ -207,6 +207,7 @@ whit_result table_end(struct table *table, const char *title, whit_result result
 {
     const struct bench *bench = table->bench;
     cli_progress_finish(&table->bench->progress);
+    table->title = title;
     if (result != WHIT_OK) {
         json_decref(table->object);
         return result;
@@ -218,6 +219,5 @@ whit_result table_end(struct table *table, const char *title, whit_result result
         printf("- %s\n", table->said[i]);
     fflush(stdout);
     document_append(bench->tables, table->object);
-    return table->has_goals && bench->ask.plot ? table_plot(table, title, bench->ask.plot)
-                                               : WHIT_OK;
+    return table->has_goals && bench->ask.plot ? table_plot(table, bench->ask.plot) : WHIT_OK;
 }

@@ -22,6 +22,7 @@ struct figure {
 
 struct table {
     struct bench *bench;
+    const char *title; /* set by table_end */
     json_t *object, *rows, *sentences, *left_out;
     bool has_goals; /* rows end with a verdict, without a closing `|` */
     uint32_t column_count, row_count, cell;
@@ -62,6 +63,6 @@ struct figure table_ratio(const struct sample_runs *a, const struct sample_runs 
 json_t *table_times(const struct sample_runs *times); /* `median spread runs` */
 
 /* table_plot.c: an SVG of how far each figure is from its limit. */
-WHIT_CHECK whit_result table_plot(const struct table *table, const char *title, const char *path);
+WHIT_CHECK whit_result table_plot(const struct table *table, const char *path);
 
 #endif

@@ -1,9 +1,7 @@
 /* Plots how far each figure is from its limit, one below the other on a logarithmic axis. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
-#include "base/file.h"
 #include "bench/table.h"
 
 static const double WIDTH = 760.0, LEFT = 230.0, RIGHT = 150.0, TOP = 34.0, ROW = 22.0,
@@ -71,8 +69,9 @@ static void put_figure(FILE *to, const struct axis *axis, const struct figure *f
     put_text(to, WIDTH - RIGHT + 10.0, y + 4.5, "start", text);
 }
 
-static void put_drawing(FILE *to, const struct table *table, const char *title)
+static void put_drawing(FILE *to, const void *user)
 {
+    const struct table *table = user;
     struct axis axis = {0.5, 2.0};
     for (uint32_t i = 0; i < table->figure_count; ++i) {
         const struct figure *figure = &table->figures[i];
@@ -88,23 +87,15 @@ static void put_drawing(FILE *to, const struct table *table, const char *title)
             ".far{fill:#d55e00}.good{fill:#0072b2}.aim{fill:none;stroke:#222}</style>\n"
             "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
             WIDTH, bottom + BOTTOM);
-    put_text(to, 8.0, 20.0, "start", title);
+    put_text(to, 8.0, 20.0, "start", table->title);
     put_axis(to, &axis, bottom);
     for (uint32_t i = 0; i < table->figure_count; ++i)
         put_figure(to, &axis, &table->figures[i], TOP + ROW * (i + 1));
     fprintf(to, "</svg>\n");
 }
 
-whit_result table_plot(const struct table *table, const char *title, const char *path)
+whit_result table_plot(const struct table *table, const char *path)
 {
-    char *text = NULL;
-    size_t bytes;
-    FILE *to = open_memstream(&text, &bytes);
-    if (to)
-        put_drawing(to, table, title);
     cli_set_saving();
-    whit_result result =
-        to && fclose(to) == 0 ? file_write_whole(&cli_log, path, text, bytes) : cli_no_memory();
-    free(text);
-    return result;
+    return document_save_written(path, put_drawing, table);
 }

@@ -19,29 +19,20 @@ struct view_case {
     json_t *whole, *moving, *idle; /* "measure" of states */
 };
 
-static whit_result write_replay(const struct bench *bench, bool only_first)
+static const char first_lines[] = "clock real\nstill\nstate first\n";
+
+static void put_replay(FILE *to, const void *user)
 {
-    char *text = NULL;
-    size_t bytes = 0;
-    FILE *to = open_memstream(&text, &bytes);
-    if (!to)
-        return WHIT_ERROR_MEMORY;
-    fprintf(to, "clock real\nstill\nstate first\n");
-    for (uint32_t i = 0; i < bench->ask.runs && !only_first; ++i)
+    const struct bench_request *ask = user;
+    int moves = ask->quick ? MOVES_QUICK : MOVES;
+    fputs(first_lines, to);
+    for (uint32_t i = 0; i < ask->runs; ++i)
         fprintf(to, "wheel 0 %d\nstill\n", i % 2 ? -1 : 1);
-    if (!only_first) {
-        int moves = bench->ask.quick ? MOVES_QUICK : MOVES;
-        fprintf(to, "state whole\nmove 100 100\nbutton left down\n");
-        for (int i = 1; i <= moves; ++i)
-            fprintf(to, "move %d %d\nwait %d\n", 100 + 3 * i, 100 + i, STEP_MS);
-        fprintf(to,
-                "button left up\nstate moving\nstill\nwait 300\nstate rest\nwait %d\nstate idle\n",
-                bench->ask.quick ? IDLE_MS_QUICK : IDLE_MS);
-    }
-    whit_result result =
-        fclose(to) == 0 ? bench_write(bench, "replay", text, bytes) : WHIT_ERROR_MEMORY;
-    free(text);
-    return result;
+    fprintf(to, "state whole\nmove 100 100\nbutton left down\n");
+    for (int i = 1; i <= moves; ++i)
+        fprintf(to, "move %d %d\nwait %d\n", 100 + 3 * i, 100 + i, STEP_MS);
+    fprintf(to, "button left up\nstate moving\nstill\nwait 300\nstate rest\nwait %d\nstate idle\n",
+            ask->quick ? IDLE_MS_QUICK : IDLE_MS);
 }
 
 /* Runs `whit view`; what it prints goes into the file `out`, and an error into the bench's own. */
@@ -76,11 +67,11 @@ static whit_result measure(const struct bench *bench, struct view_case *c)
     char replay[BENCH_PATH], out[BENCH_PATH];
     bench_file(bench, "replay", replay);
     bench_file(bench, "states", out);
-    whit_result result = write_replay(bench, true);
+    whit_result result = bench_write(bench, "replay", first_lines, sizeof first_lines - 1);
     if (result == WHIT_OK)
         result = run_viewer(bench, c, replay, out); /* fills caches */
     if (result == WHIT_OK)
-        result = write_replay(bench, false);
+        result = document_save_written(replay, put_replay, &bench->ask);
     double start_ms = whit_clock_ms();
     if (result == WHIT_OK)
         result = run_viewer(bench, c, replay, out);

@@ -22,7 +22,6 @@ struct views {
     struct bench_scene loaded;
     whit_camera camera;
     uint32_t side;
-    whit_accel *accel;
     whit_renderer *renderers[SIDES]; /* for views together; for one picture; for views one after
                                         another */
     whit_camera *cameras;
@@ -106,7 +105,7 @@ static whit_result create_renderers(struct views *views)
         views->cameras[i] = views->around ? camera_around(views, i) : camera_of_tile(views, i);
     for (int side = 0; result == WHIT_OK && side < (int)sides_of(views->around); ++side) {
         const whit_renderer_params params = params_of(views, (enum side)side);
-        result = whit_renderer_create(views->bench->device, views->accel, &params,
+        result = whit_renderer_create(views->bench->device, views->loaded.accel, &params,
                                       &views->renderers[side]);
     }
     return result;
@@ -201,9 +200,7 @@ static whit_result run_scene(struct table *table, const char *name, bool around)
     views.count = views.side * views.side;
     whit_result result = bench_find(table->bench, name, path);
     if (result == WHIT_OK)
-        result = bench_load(path, &views.loaded);
-    if (result == WHIT_OK)
-        result = whit_accel_create(views.loaded.scene, NULL, &views.accel);
+        result = bench_load_trees(path, &views.loaded);
     if (result == WHIT_OK)
         result = create_renderers(&views);
     if (result == WHIT_OK)
@@ -212,7 +209,6 @@ static whit_result run_scene(struct table *table, const char *name, bool around)
         put_row(table, &views);
     for (int i = 0; i < SIDES; ++i)
         whit_renderer_destroy(views.renderers[i]);
-    whit_accel_destroy(views.accel);
     bench_unload(&views.loaded);
     free(views.cameras);
     return result;
