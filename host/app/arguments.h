@@ -47,6 +47,8 @@ char *cli_line(int argc, char **argv);
 /* Says what is wrong with the usage and how to get help; false, so that parsers can return it.
    Sets `status`. */
 bool cli_misuse(struct cli_reader *reader, const char *format, ...) WHIT_PRINTF(2, 3);
+/* Does so, and gives the status, so that commands can return it. */
+#define CLI_MISUSE(reader, ...) (cli_misuse((reader), __VA_ARGS__), (reader)->status)
 
 /* Calls cli_misuse where `path` is `-`, which other programs take for a pipe; `hint` says what to
    write instead. */

@@ -160,10 +160,8 @@ static int run(const struct cli_command *command, int argc, char **argv)
     cli_reader_init(&reader, command, argc, argv);
     if (!cli_read(&reader, &devices, NULL))
         return reader.status;
-    if (reader.positional) {
-        cli_misuse(&reader, "`%s` is one argument too many", reader.positional);
-        return reader.status;
-    }
+    if (reader.positional)
+        return CLI_MISUSE(&reader, "`%s` is one argument too many", reader.positional);
     cache_prepare(false);
     return list(devices.json);
 }

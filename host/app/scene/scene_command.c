@@ -83,17 +83,13 @@ static int run(const struct cli_command *command, int argc, char **argv)
     if (!job_read(&job, &reader, &request, false) ||
         !cli_no_dash(&reader, "--triangles", request.triangles, "for a pipe give /dev/stdout"))
         return reader.status;
-    if (is_for_picture(&job.settings) && !request.effects && !request.kernels) {
-        cli_misuse(
+    if (is_for_picture(&job.settings) && !request.effects && !request.kernels)
+        return CLI_MISUSE(
             &reader,
             "--size, --camera, --aa, --depth, --numerics, --minification and --shader are for the "
             "pictures of --effects and --kernels");
-        return reader.status;
-    }
-    if (request.effects && request.kernels) {
-        cli_misuse(&reader, "--effects and --kernels are two listings: give one of them");
-        return reader.status;
-    }
+    if (request.effects && request.kernels)
+        return CLI_MISUSE(&reader, "--effects and --kernels are two listings: give one of them");
     if (request.triangles && !cli_can_write(request.triangles))
         return EXIT_USAGE;
     job_start(&job);

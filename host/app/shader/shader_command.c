@@ -39,19 +39,15 @@ static const struct setting options[] = {
 static int print_template(struct cli_reader *reader)
 {
     char list[256] = "";
-    if (!reader->second) {
-        cli_misuse(reader, "new: which function? `whit shader new shade > my.glsl`");
-        return reader->status;
-    }
+    if (!reader->second)
+        return CLI_MISUSE(reader, "new: which function? `whit shader new shade > my.glsl`");
     unsigned hook = 0;
     for (; hook < WHIT_HOOKS && strcmp(reader->second, whit_hook_name((whit_hook)hook)) != 0;
          ++hook)
         snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", hook ? ", " : "",
                  whit_hook_name((whit_hook)hook));
-    if (hook == WHIT_HOOKS) {
-        cli_misuse(reader, "new %s: one of %s is needed", reader->second, list);
-        return reader->status;
-    }
+    if (hook == WHIT_HOOKS)
+        return CLI_MISUSE(reader, "new %s: one of %s is needed", reader->second, list);
     char *text = whit_shader_template((whit_hook)hook);
     if (!text)
         return cli_exit_of(cli_no_memory());
@@ -234,8 +230,7 @@ static int extract(struct cli_reader *reader, const struct shader_options *reque
     const whit_load_params params = settings_load(&request->job.settings, folders);
     if (reader->second)
         return extract_run(reader->second, request->into, &params);
-    cli_misuse(reader, "extract: out of which picture? `whit shader extract toon.png`");
-    return reader->status;
+    return CLI_MISUSE(reader, "extract: out of which picture? `whit shader extract toon.png`");
 }
 
 /* Tries the compiled shader on the device and prints what was found, before any later error. --dump
@@ -274,15 +269,12 @@ static int run(const struct cli_command *command, int argc, char **argv)
         return print_template(&reader);
     if (reader.positional && strcmp(reader.positional, "extract") == 0)
         return extract(&reader, &request);
-    if (request.into) {
-        cli_misuse(&reader, "--into is for `whit shader extract PICTURE`");
-        return reader.status;
-    }
-    if (!reader.positional || reader.second) {
-        cli_misuse(&reader, "one FILE is needed, or `new` and the name of a function, or `extract` "
-                            "and a picture");
-        return reader.status;
-    }
+    if (request.into)
+        return CLI_MISUSE(&reader, "--into is for `whit shader extract PICTURE`");
+    if (!reader.positional || reader.second)
+        return CLI_MISUSE(&reader,
+                          "one FILE is needed, or `new` and the name of a function, or `extract` "
+                          "and a picture");
     snprintf(job->settings.shader, sizeof job->settings.shader, "%s", reader.positional);
     whit_result result = job_load_shader(job);
     int status =
