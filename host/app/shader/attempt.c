@@ -47,9 +47,7 @@ static whit_result list_kernels(const struct job *job, struct attempt *attempt)
 
 static whit_result run_tests(struct job *job, whit_renderer *renderer, struct attempt *attempt)
 {
-    whit_shader_info info;
-    whit_shader_get_info(job->shader, &info);
-    attempt->checks = calloc(info.check_count, sizeof *attempt->checks);
+    attempt->checks = calloc(attempt->info.check_count, sizeof *attempt->checks);
     double start_ms = whit_clock_ms();
     if (!attempt->checks)
         return WHIT_ERROR_MEMORY;
@@ -67,17 +65,14 @@ static whit_result run_tests(struct job *job, whit_renderer *renderer, struct at
 
 static whit_result try_pictures(struct job *job, struct attempt *attempt)
 {
-    whit_shader_info info;
     whit_renderer *renderer = NULL;
     const whit_renderer_params params = params_of(job);
-    whit_shader_get_info(job->shader, &info);
-    attempt->expected = info.expectation_count > 0;
     whit_result result = whit_renderer_create(job->device, job->accel, &params, &renderer);
-    if (result == WHIT_OK && info.test_count)
+    if (result == WHIT_OK && attempt->info.test_count)
         result = run_tests(job, renderer, attempt);
-    if (result == WHIT_OK && attempt->expected)
+    if (result == WHIT_OK && attempt->info.expectation_count)
         result = whit_renderer_render(renderer);
-    if (result == WHIT_OK && attempt->expected)
+    if (result == WHIT_OK && attempt->info.expectation_count)
         result = whit_renderer_check_expectations(renderer, &attempt->held);
     whit_renderer_destroy(renderer);
     return result;
@@ -94,9 +89,9 @@ static bool has_device(void)
 
 whit_result attempt_make(struct job *job, const char *scene, struct attempt *attempt)
 {
-    whit_shader_info info;
-    whit_shader_get_info(job->shader, &info);
-    bool needs = info.test_count || info.expectation_count;
+    const whit_shader_info *info = &attempt->info;
+    whit_shader_get_info(job->shader, &attempt->info);
+    bool needs = info->test_count || info->expectation_count;
     cache_prepare(job->settings.no_cache);
     drivers_prepare();
     if (!needs && !has_device()) {
@@ -108,8 +103,7 @@ whit_result attempt_make(struct job *job, const char *scene, struct attempt *att
         result = job_build(job);
     if (result == WHIT_OK)
         result = job_open_device(job);
-    attempt->tried = result == WHIT_OK;
-    if (result == WHIT_OK && info.kernel_count)
+    if (result == WHIT_OK && info->kernel_count)
         result = list_kernels(job, attempt);
     if (result == WHIT_OK && needs)
         result = try_pictures(job, attempt);
@@ -158,11 +152,10 @@ static uint32_t count_wrong(const struct attempt *attempt, const whit_shader_tes
     return wrong;
 }
 
-static void say_wrong(const struct attempt *attempt, const whit_shader_info *info,
-                      const whit_shader_test *test)
+static void say_wrong(const struct attempt *attempt, const whit_shader_test *test)
 {
     for (uint32_t i = test->first_check; i < test->first_check + test->check_count; ++i) {
-        const whit_shader_check *check = &info->checks[i];
+        const whit_shader_check *check = &attempt->info.checks[i];
         const whit_check_result *result = &attempt->checks[i];
         if (result->failed)
             cli_error("%s:%u: check(%s) fails for %u of %d seeds of %s, the smallest is %u",
@@ -174,21 +167,18 @@ static void say_wrong(const struct attempt *attempt, const whit_shader_info *inf
     }
 }
 
-void attempt_say(const struct attempt *attempt, const whit_shader *shader)
+void attempt_say(const struct attempt *attempt)
 {
-    whit_shader_info info;
-    whit_shader_get_info(shader, &info);
-    for (uint32_t i = 0; attempt->checks && i < info.test_count; ++i)
-        say_wrong(attempt, &info, &info.tests[i]);
+    for (uint32_t i = 0; attempt->checks && i < attempt->info.test_count; ++i)
+        say_wrong(attempt, &attempt->info.tests[i]);
 }
 
-void attempt_print(const struct attempt *attempt, const whit_shader *shader)
+void attempt_print(const struct attempt *attempt)
 {
-    whit_shader_info info;
-    whit_shader_get_info(shader, &info);
+    const whit_shader_info *info = &attempt->info;
     print_kernels(attempt);
-    for (uint32_t i = 0; attempt->checks && i < info.test_count; ++i) {
-        const whit_shader_test *test = &info.tests[i];
+    for (uint32_t i = 0; attempt->checks && i < info->test_count; ++i) {
+        const whit_shader_test *test = &info->tests[i];
         uint32_t wrong = count_wrong(attempt, test);
         printf("  test %s: %s, %u check%s of %d seeds", test->name, wrong ? "FAILED" : "passed",
                test->check_count, test->check_count == 1 ? "" : "s", WHIT_TEST_SEEDS);
@@ -199,8 +189,8 @@ void attempt_print(const struct attempt *attempt, const whit_shader *shader)
     if (attempt->checks)
         printf("  tests: compiled in %.0f ms, made by the driver in %.0f ms, run in %.1f ms\n",
                attempt->compile_ms, attempt->driver_ms, attempt->run_ms);
-    for (uint32_t i = 0; attempt->held && i < info.expectation_count; ++i)
-        printf("  expected: %s == base\n", info.expectations[i].word);
+    for (uint32_t i = 0; attempt->held && i < info->expectation_count; ++i)
+        printf("  expected: %s == base\n", info->expectations[i].word);
 }
 
 static json_t *describe_check(const whit_shader_check *check, const whit_check_result *result)
@@ -215,8 +205,9 @@ static json_t *describe_check(const whit_shader_check *check, const whit_check_r
     return object;
 }
 
-static json_t *describe_tests(const struct attempt *attempt, const whit_shader_info *info)
+static json_t *describe_tests(const struct attempt *attempt)
 {
+    const whit_shader_info *info = &attempt->info;
     json_t *list = document_array();
     for (uint32_t i = 0; attempt->checks && i < info->test_count; ++i) {
         const whit_shader_test *test = &info->tests[i];
@@ -246,32 +237,30 @@ static json_t *describe_kernels(const struct attempt *attempt)
     return list;
 }
 
-void attempt_describe(const struct attempt *attempt, const whit_shader *shader, json_t *object)
+void attempt_describe(const struct attempt *attempt, json_t *object)
 {
-    whit_shader_info info;
-    whit_shader_get_info(shader, &info);
+    const whit_shader_info *info = &attempt->info;
     document_put(object, "variants", describe_kernels(attempt));
-    document_put(object, "tests", describe_tests(attempt, &info));
+    document_put(object, "tests", describe_tests(attempt));
     json_t *expected = document_list(object, "expected");
-    for (uint32_t i = 0; i < info.expectation_count; ++i) {
+    for (uint32_t i = 0; i < info->expectation_count; ++i) {
         json_t *one = document_entry(expected);
-        document_text(one, "name", info.expectations[i].word);
-        document_text(one, "file", info.expectations[i].file);
-        document_count(one, "line", info.expectations[i].line);
+        document_text(one, "name", info->expectations[i].word);
+        document_text(one, "file", info->expectations[i].file);
+        document_count(one, "line", info->expectations[i].line);
     }
-    document_flag(object, "held", attempt->held || !attempt->expected);
+    document_flag(object, "held", attempt->held || !info->expectation_count);
     json_t *times = document_child(object, "test_times");
     document_ms(times, "compile_ms", attempt->compile_ms);
     document_ms(times, "driver_ms", attempt->driver_ms);
     document_ms(times, "run_ms", attempt->run_ms);
 }
 
-int attempt_status(const struct attempt *attempt, const whit_shader *shader)
+int attempt_status(const struct attempt *attempt)
 {
-    whit_shader_info info;
-    whit_shader_get_info(shader, &info);
-    bool fine = attempt->held || !attempt->expected;
-    for (uint32_t i = 0; attempt->checks && i < info.check_count; ++i)
+    const whit_shader_info *info = &attempt->info;
+    bool fine = attempt->held || !info->expectation_count;
+    for (uint32_t i = 0; attempt->checks && i < info->check_count; ++i)
         fine = fine && attempt->checks[i].reached && !attempt->checks[i].failed;
     return fine ? EXIT_FINE : EXIT_DIFFERS;
 }

@@ -175,11 +175,11 @@ static int print_json(const whit_shader *shader, const struct attempt *attempt)
     document_flag(object, "trusted", info.fuel == 0);
     document_count(object, "fuel", info.fuel);
     document_hash(object, "hash", info.hash);
-    attempt_describe(attempt, shader, object);
+    attempt_describe(attempt, object);
     char *text = document_lines(object);
     puts(text);
     free(text);
-    return attempt_status(attempt, shader);
+    return attempt_status(attempt);
 }
 
 /* Writes `text` to a file and frees it. `text` NULL is an error, which is printed here. */
@@ -244,12 +244,12 @@ static int examine(struct job *job, const struct shader_options *request, const 
         status = print_json(job->shader, &attempt);
     if (result == WHIT_OK && !request->json) {
         print_text(job->shader, path);
-        attempt_print(&attempt, job->shader);
-        status = attempt_status(&attempt, job->shader);
+        attempt_print(&attempt);
+        status = attempt_status(&attempt);
     }
     fflush(stdout);
     if (result == WHIT_OK)
-        attempt_say(&attempt, job->shader);
+        attempt_say(&attempt);
     attempt_finish(&attempt);
     if (request->dump && dump(job->shader, request->dump) != WHIT_OK)
         status = EXIT_USAGE;
