@@ -3,11 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *study_kind_name(enum study_kind kind)
-{
-    static const char *const names[] = {"primary", "shadow", "diffuse"};
-    return names[kind];
-}
+const char *const study_kind_names[STUDY_KINDS] = {"primary", "shadow", "diffuse"};
 
 whit_result study_step(struct study *study)
 {

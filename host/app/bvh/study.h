@@ -37,8 +37,7 @@ struct study {
     bool traced;
 };
 
-/* The name of a kind: "primary". */
-const char *study_kind_name(enum study_kind kind);
+extern const char *const study_kind_names[STUDY_KINDS]; /* "primary" */
 /* Counts one of study->steps as done. An error where the time limit has passed or the user stopped
    the program. */
 whit_result study_step(struct study *study);

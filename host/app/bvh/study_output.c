@@ -53,7 +53,7 @@ static void print_columns(const struct study *study, int width)
         printf("%7ut ", study->threads[i]);
     printf("%9s%6s%8s%8s%9s%8s%8s", "nodes", "depth", "SAH", "EPO", "overlap", "a line", "a line");
     for (uint32_t kind = 0; study->traced && kind < STUDY_KINDS; ++kind)
-        printf("%9s", study_kind_name((enum study_kind)kind));
+        printf("%9s", study_kind_names[kind]);
     putchar('\n');
 }
 
@@ -95,9 +95,8 @@ static void print_rates(const struct study *study, const struct study_row *row)
     for (uint32_t kind = 0; study->traced && kind < STUDY_KINDS; ++kind) {
         const struct sample_summary *rate = &row->mrays_per_s[kind];
         if (study->rays[kind].count)
-            printf("  %-9s%.3f Mray/s (%.3f to %.3f), %u rays\n",
-                   study_kind_name((enum study_kind)kind), rate->median, rate->min, rate->max,
-                   study->rays[kind].count);
+            printf("  %-9s%.3f Mray/s (%.3f to %.3f), %u rays\n", study_kind_names[kind],
+                   rate->median, rate->min, rate->max, study->rays[kind].count);
     }
 }
 
@@ -195,7 +194,7 @@ static json_t *rates_document(const struct study *study, const struct study_row 
 {
     json_t *rates = document_object();
     for (uint32_t kind = 0; kind < STUDY_KINDS; ++kind) {
-        const char *name = study_kind_name((enum study_kind)kind);
+        const char *name = study_kind_names[kind];
         if (study->traced && study->rays[kind].count)
             put_spread(document_child(rates, name), &row->mrays_per_s[kind]);
         else
@@ -276,7 +275,7 @@ static int print_json(const struct study *study)
     document_count(root, "runs", study->run_count);
     json_t *rays = document_child(root, "rays");
     for (uint32_t kind = 0; kind < STUDY_KINDS; ++kind)
-        document_count(rays, study_kind_name((enum study_kind)kind), study->rays[kind].count);
+        document_count(rays, study_kind_names[kind], study->rays[kind].count);
     json_t *rows = document_list(root, "builders");
     for (uint32_t i = 0; i < study->row_count; ++i)
         document_append(rows, row_document(study, &study->rows[i]));

@@ -79,7 +79,7 @@ static void compare(struct tracing *tracing, uint32_t row, uint32_t kind)
     if (study->differing > before)
         cli_error("%s: %llu hits of %u %s rays differ from those of %s, first that of ray %u",
                   study->rows[row].name, (unsigned long long)(study->differing - before),
-                  rays->count, study_kind_name((enum study_kind)kind), study->rows[0].name, first);
+                  rays->count, study_kind_names[kind], study->rows[0].name, first);
 }
 
 /* Traces each row once, to warm up and to get the hits that are compared. */

@@ -94,21 +94,15 @@ static void print_device(const whit_device_info *info)
         printf("     not usable: %s\n", cli_shown(info->why_not));
 }
 
-static json_t *hints_document(const struct device_hints *hints)
-{
-    json_t *list = document_array();
-    for (uint32_t i = 0; i < hints->count; ++i)
-        document_append(list, json_string(hints->list[i]));
-    return list;
-}
-
 static int print_json(const whit_device_info *infos, uint32_t count,
                       const struct device_hints *hints)
 {
     json_t *root = document_root(), *list = document_list(root, "devices");
     for (uint32_t i = 0; i < count; ++i)
         document_append(list, device_document(&infos[i]));
-    document_put(root, "hints", hints_document(hints));
+    list = document_list(root, "hints");
+    for (uint32_t i = 0; i < hints->count; ++i)
+        document_append(list, json_string(hints->list[i]));
     document_put(root, "cache", cache_document());
     return cli_print_json(root);
 }

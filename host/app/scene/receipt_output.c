@@ -59,11 +59,10 @@ static void print_price(const struct cost_effect *row)
 
 /* Whether the scene needs the effect, but the kernel leaves it out because no function of the
    shader reads it. */
-static bool is_left_out(const struct receipt *receipt, const struct cost_effect *row)
+static bool is_left_out(const struct receipt *receipt, const whit_effect_info *effect,
+                        const struct cost_effect *row)
 {
-    whit_effect_info effect;
-    whit_scene_get_effect(receipt->job->scene, (uint32_t)(row - receipt->rows), &effect);
-    return receipt->job->shader && effect.called && !row->compiled;
+    return receipt->job->shader && effect->called && !row->compiled;
 }
 
 int receipt_print_text(const struct receipt *receipt)
@@ -77,7 +76,8 @@ int receipt_print_text(const struct receipt *receipt)
         whit_scene_get_effect(receipt->job->scene, i, &effect);
         printf("  %-19s%-8s", effect.name, row->compiled ? "yes" : "-");
         print_price(row);
-        printf("%s%s\n", cli_shown(effect.reason), is_left_out(receipt, row) ? NOT_ASKED : "");
+        printf("%s%s\n", cli_shown(effect.reason),
+               is_left_out(receipt, &effect, row) ? NOT_ASKED : "");
     }
     puts("\n  ms of one frame, with the effect less without it, measured in turns, and the interval"
          "\n  that holds the median 19 times of 20; of what is not compiled: what it would cost if"
@@ -95,8 +95,8 @@ static json_t *times_document(const struct sample_median *times, uint32_t rounds
     return object;
 }
 
-static json_t *row_document(const whit_effect_info *effect, const struct cost_effect *row,
-                            bool left_out)
+static json_t *row_document(const struct receipt *receipt, const whit_effect_info *effect,
+                            const struct cost_effect *row)
 {
     json_t *object = document_object(), *difference = NULL;
     const struct sample_median cost = cost_of(row);
@@ -104,7 +104,7 @@ static json_t *row_document(const whit_effect_info *effect, const struct cost_ef
     document_flag(object, "called", effect->called);
     document_flag(object, "compiled", row->compiled);
     document_text(object, "reason", effect->reason);
-    document_flag(object, "asked", !left_out);
+    document_flag(object, "asked", !is_left_out(receipt, effect, row));
     document_put(object, "cost_ms",
                  row->priced ? times_document(&cost, row->price.rounds) : json_null());
     if (row->priced) {
@@ -137,8 +137,7 @@ int receipt_print_json(const struct receipt *receipt)
     for (uint32_t i = 0; i < receipt->row_count; ++i) {
         whit_effect_info effect;
         whit_scene_get_effect(receipt->job->scene, i, &effect);
-        document_append(effects, row_document(&effect, &receipt->rows[i],
-                                              is_left_out(receipt, &receipt->rows[i])));
+        document_append(effects, row_document(receipt, &effect, &receipt->rows[i]));
     }
     return cli_print_json(root);
 }
