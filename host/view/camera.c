@@ -63,9 +63,11 @@ static void stand_up(struct view_camera *camera, double look[3])
     camera->along_y = false;
 }
 
-/* Turns a direction by the angles, but not beyond STEEPEST. */
-static void turn(struct view_camera *camera, double look[3], double right, double up)
+/* Gives the direction to the target, turned by the angles, but not beyond STEEPEST. */
+static void turn(struct view_camera *camera, double right, double up, double look[3])
 {
+    for (int i = 0; i < 3; ++i)
+        look[i] = camera->target[i] - camera->eye[i];
     stand_up(camera, look);
     double axis[3], side[3], tilted[3];
     memcpy(axis, camera->up, sizeof axis);
@@ -85,9 +87,7 @@ static void turn(struct view_camera *camera, double look[3], double right, doubl
 void camera_orbit(struct view_camera *camera, double right, double up)
 {
     double look[3];
-    for (int i = 0; i < 3; ++i)
-        look[i] = camera->target[i] - camera->eye[i];
-    turn(camera, look, right, up);
+    turn(camera, right, up, look);
     for (int i = 0; i < 3; ++i)
         camera->eye[i] = camera->target[i] - look[i];
 }
@@ -95,9 +95,7 @@ void camera_orbit(struct view_camera *camera, double right, double up)
 void camera_turn(struct view_camera *camera, double right, double up)
 {
     double look[3];
-    for (int i = 0; i < 3; ++i)
-        look[i] = camera->target[i] - camera->eye[i];
-    turn(camera, look, right, up);
+    turn(camera, right, up, look);
     for (int i = 0; i < 3; ++i)
         camera->target[i] = camera->eye[i] + look[i];
 }

@@ -18,13 +18,15 @@ static const double YIELD_MS = 40.0;
    shader. */
 static const double SPARE_MS = 1e3;
 
-/* The time `ms` from now, for pthread_cond_timedwait. */
-static void after(double ms, struct timespec *until)
+/* Waits for a condition, at most `ms`. */
+static void wait_for(pthread_cond_t *condition, struct engine *engine, double ms)
 {
-    clock_gettime(CLOCK_MONOTONIC, until);
-    int64_t ns = until->tv_nsec + (int64_t)(ms * 1e6);
-    until->tv_sec += (time_t)(ns / 1000000000);
-    until->tv_nsec = (long)(ns % 1000000000);
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    int64_t ns = until.tv_nsec + (int64_t)(ms * 1e6);
+    until.tv_sec += (time_t)(ns / 1000000000);
+    until.tv_nsec = (long)(ns % 1000000000);
+    (void)pthread_cond_timedwait(condition, &engine->lock, &until);
 }
 
 /* ---- The drawing thread ---- */
@@ -372,25 +374,19 @@ static void tidy_up(struct engine *engine)
 
 static void wait_for_work(struct engine *engine)
 {
-    struct timespec until;
-    double left_ms = engine->spare_ms - whit_clock_ms();
-    if (engine->spare_ms > 0.0 && !engine->job) {
-        after(left_ms, &until);
-        (void)pthread_cond_timedwait(&engine->work, &engine->lock, &until);
-    } else {
+    if (engine->spare_ms > 0.0 && !engine->job)
+        wait_for(&engine->work, engine, engine->spare_ms - whit_clock_ms());
+    else
         pthread_cond_wait(&engine->work, &engine->lock);
-    }
 }
 
 /* Waits for the screen if a new picture should be shown first. True: it has waited. */
 static bool yield(struct engine *engine)
 {
-    struct timespec until;
     double left_ms = engine->yields_ms - whit_clock_ms();
     if (engine->shown >= engine->yields || left_ms <= 0.0)
         return false;
-    after(left_ms, &until);
-    (void)pthread_cond_timedwait(&engine->work, &engine->lock, &until);
+    wait_for(&engine->work, engine, left_ms);
     return true;
 }
 
@@ -513,11 +509,8 @@ bool engine_is_still(struct engine *engine)
 
 void engine_wait(struct engine *engine, double ms)
 {
-    struct timespec until;
-    after(ms, &until);
     pthread_mutex_lock(&engine->lock);
-    bool fresh = engine->lanes[0].frame.number > 0 || engine->lanes[1].frame.number > 0;
-    if (!fresh)
-        (void)pthread_cond_timedwait(&engine->news, &engine->lock, &until);
+    if (engine->lanes[0].frame.number == 0 && engine->lanes[1].frame.number == 0)
+        wait_for(&engine->news, engine, ms);
     pthread_mutex_unlock(&engine->lock);
 }
