@@ -82,7 +82,7 @@ static void wished_finish(struct wished *wished)
     free(wished->rgba);
 }
 
-static whit_result display(const whit_image *color, uint8_t **rgba)
+whit_result appearance_display(const whit_image *color, uint8_t **rgba)
 {
     whit_image_info info;
     whit_image_get_info(color, &info);
@@ -98,7 +98,7 @@ static whit_result draw_wished(whit_renderer *renderer, struct wished *out)
     whit_result result = whit_renderer_render(renderer);
     if (result == WHIT_OK)
         result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &out->color);
-    return result == WHIT_OK ? display(out->color, &out->rgba) : result;
+    return result == WHIT_OK ? appearance_display(out->color, &out->rgba) : result;
 }
 
 /* Draws both pictures: `glow` is displayed with the exposure of the params, `furnace` without. */
@@ -217,7 +217,7 @@ static whit_result measure_lost(const struct appearance_shader *shader,
     uint8_t *shown = NULL;
     whit_result result = read_ids(of->renderer, of->color, &ids);
     if (result == WHIT_OK)
-        result = display(of->color, &shown);
+        result = appearance_display(of->color, &shown);
     if (result == WHIT_OK)
         result = draw_wishes(shader, of, &glow, &furnace);
     if (result == WHIT_OK)

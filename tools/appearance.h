@@ -5,6 +5,9 @@
 
 #include "whit.h"
 
+/* The bytes of a picture as displayed, 4 a pixel; free() them. */
+WHIT_CHECK whit_result appearance_display(const whit_image *color, uint8_t **rgba);
+
 /* A shader that finds surfaces that the file itself makes white or black, by two more pictures: the
    light that each surface emits, and the light that it would send if light of 1 came from all
    directions. */

@@ -152,12 +152,12 @@ static bool is_picture(const char *path)
 static whit_result read_displayed(const whit_image *color, whit_image **image)
 {
     whit_image_info info;
+    uint8_t *rgba;
+    whit_result result = appearance_display(color, &rgba);
+    if (result != WHIT_OK)
+        return result;
     whit_image_get_info(color, &info);
-    uint8_t *rgba = malloc(4 * (size_t)info.width * info.height);
-    if (!rgba)
-        return WHIT_ERROR_MEMORY;
-    whit_image_display_bytes(color, rgba);
-    whit_result result = whit_image_create_display(info.width, info.height, rgba, image);
+    result = whit_image_create_display(info.width, info.height, rgba, image);
     free(rgba);
     return result;
 }
