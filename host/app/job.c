@@ -146,13 +146,6 @@ whit_result job_build(struct job *job)
     return result == WHIT_OK ? job_still_wanted() : result;
 }
 
-static whit_device_params device_params(const struct job *job)
-{
-    const struct settings *settings = &job->settings;
-    return (whit_device_params){.selector = settings->device[0] ? settings->device : NULL,
-                                .validation = settings->validation};
-}
-
 static const whit_log *log_of(const struct job *job)
 {
     return job->log ? job->log : &cli_log;
@@ -160,13 +153,13 @@ static const whit_log *log_of(const struct job *job)
 
 void job_begin_device(struct job *job)
 {
-    const whit_device_params params = device_params(job);
+    const whit_device_params params = settings_device(&job->settings);
     job->opening = whit_device_open_begin(&params, log_of(job));
 }
 
 whit_result job_open_device(struct job *job)
 {
-    const whit_device_params params = device_params(job);
+    const whit_device_params params = settings_device(&job->settings);
     double start_ms = whit_clock_ms();
     whit_result result = job->opening ? whit_device_open_end(job->opening, &job->device)
                                       : whit_device_create(&params, log_of(job), &job->device);

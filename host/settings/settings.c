@@ -131,6 +131,12 @@ whit_renderer_params settings_picture(const struct settings *settings)
     return params;
 }
 
+whit_device_params settings_device(const struct settings *settings)
+{
+    return (whit_device_params){.selector = settings->device[0] ? settings->device : NULL,
+                                .validation = settings->validation};
+}
+
 whit_overlay settings_overlay(const struct settings *settings)
 {
     return (whit_overlay){.grid = settings->grid,

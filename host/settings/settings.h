@@ -110,6 +110,8 @@ void settings_expose(struct settings *settings, const whit_scene_info *scene);
 /* The params for libwhit. Their strings point into `settings`, and the list of allowed folders of
    settings_load is `folders`. */
 whit_renderer_params settings_picture(const struct settings *settings);
+/* The device that the settings name, with its validation. */
+whit_device_params settings_device(const struct settings *settings);
 /* The overlays of the picture. */
 whit_overlay settings_overlay(const struct settings *settings);
 whit_load_params settings_load(const struct settings *settings,

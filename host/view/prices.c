@@ -140,8 +140,7 @@ static void run(void *context)
     struct prices *prices = context;
     const struct settings *settings = &prices->params.settings;
     const whit_log log = {on_message, prices, WHIT_LOG_ERROR};
-    const whit_device_params params = {.selector = settings->device[0] ? settings->device : NULL,
-                                       .validation = settings->validation};
+    const whit_device_params params = settings_device(settings);
     whit_device *device = NULL;
     whit_accel *accel = NULL;
     struct cost_report *report = NULL;

@@ -199,10 +199,8 @@ whit_result session_open(struct session *session, const struct settings *setting
                          const struct session_parts *parts, const whit_log *log,
                          const whit_log *scene_log)
 {
-    const whit_device_params device = {.selector =
-                                           settings->device[0] ? session->settings.device : NULL,
-                                       .validation = settings->validation};
     session->settings = *settings;
+    const whit_device_params device = settings_device(&session->settings);
     session->log = *log;
     session->scene = scene_ref_take(parts->scene);
     session->shader = shader_ref_take(parts->shader);

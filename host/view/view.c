@@ -412,10 +412,7 @@ static whit_result open_ui(struct view *view)
 
 static whit_result open_device(struct view *view)
 {
-    const whit_device_params params = {
-        .selector = view->settings.device[0] ? view->settings.device : NULL,
-        .validation = view->settings.validation,
-    };
+    const whit_device_params params = settings_device(&view->settings);
     const struct swapchain_params chain = {
         .vsync = !view->params->no_vsync,
     };

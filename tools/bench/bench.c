@@ -129,8 +129,7 @@ static whit_result write_json(struct bench *bench)
 
 static int work(struct bench *bench)
 {
-    const char *device = bench->ask.settings.device;
-    const whit_device_params params = {.selector = device[0] ? device : NULL};
+    const whit_device_params params = settings_device(&bench->ask.settings);
     whit_result result = make_folder(bench);
     if (result != WHIT_OK)
         return cli_exit_of(result);
