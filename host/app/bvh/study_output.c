@@ -23,11 +23,8 @@ static void print_heading(const struct study *study)
     printf(" in %u instance%s of %u mesh%s\n", scene.instance_count,
            scene.instance_count == 1 ? "" : "s", scene.mesh_count,
            scene.mesh_count == 1 ? "" : "es");
-    if (study->traced) {
-        whit_device_info device;
-        whit_device_get_info(study->job.device, &device);
-        printf("device     %s (%s)\n", cli_shown(device.name), cli_shown(stats_driver(&device)));
-    }
+    if (study->traced)
+        stats_print_device("device     ", study->job.device);
     printf("measured   %u run%s of each, in turns: medians\n\n", study->run_count,
            study->run_count == 1 ? "" : "s");
 }

@@ -56,10 +56,8 @@ static void print_bits(const whit_hard_report *report)
 
 static void print_heading(const struct hard *hard, struct widths widths)
 {
-    whit_device_info device;
-    whit_device_get_info(hard->job.device, &device);
     print_verdict(hard->report);
-    printf("device     %s (%s)\n", cli_shown(device.name), cli_shown(stats_driver(&device)));
+    stats_print_device("device     ", hard->job.device);
     printf("scene      %s\n", hard->job.settings.scene[0] ? cli_shown(hard->job.settings.scene)
                                                           : "the built-in cases");
     print_bits(hard->report);

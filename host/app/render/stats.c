@@ -418,11 +418,18 @@ static void print_frames(const struct sequence *sequence)
 
 /* The driver's text without the device's name, with which some drivers begin: "llvmpipe (LLVM 15)",
    "llvmpipe Mesa 22.3". */
-const char *stats_driver(const whit_device_info *device)
+static const char *driver_of(const whit_device_info *device)
 {
     size_t word = strcspn(device->name, " ");
     bool same = word && strncmp(device->name, device->driver, word) == 0;
     return same && device->driver[word] == ' ' ? device->driver + word + 1 : device->driver;
+}
+
+void stats_print_device(const char *label, const whit_device *device)
+{
+    whit_device_info info;
+    whit_device_get_info(device, &info);
+    printf("%s%s (%s)\n", label, cli_shown(info.name), cli_shown(driver_of(&info)));
 }
 
 static int print_text(const struct job *job, const struct render_request *request,
@@ -438,8 +445,7 @@ static int print_text(const struct job *job, const struct render_request *reques
         snprintf(samples, sizeof samples, "%u", picture->sampling.count);
     printf("picture    %s: %u x %u, %s samples a pixel, depth %u\n", cli_shown(request->output),
            picture->width, picture->height, samples, picture->depth);
-    printf("device     %s (%s)\n", cli_shown(figures->device.name),
-           cli_shown(stats_driver(&figures->device)));
+    stats_print_device("device     ", job->device);
     print_times(job, figures);
     print_rays(figures);
     print_stages(job, figures);

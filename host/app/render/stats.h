@@ -4,8 +4,8 @@
 
 #include "app/render/render_command.h"
 
-/* The device's driver without the name of the device in front. */
-const char *stats_driver(const whit_device_info *device);
+/* Prints `label`, the device's name and its driver as a line. */
+void stats_print_device(const char *label, const whit_device *device);
 
 /* --stats of `whit render`: on standard output. `sequence`: with --frames, else NULL; `refined`:
    with --refine, else NULL. */

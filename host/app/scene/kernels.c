@@ -22,12 +22,12 @@ static void print_kernel(const whit_kernel *kernel)
     putchar('\n');
 }
 
-static int print_text(const struct job *job, const whit_device_info *device,
-                      const whit_kernel *kernels, uint32_t count)
+static int print_text(const struct job *job, const whit_kernel *kernels, uint32_t count)
 {
     uint32_t told = 0;
-    printf("%s\n  device    %s (%s)\n\n", cli_shown(job->settings.scene), cli_shown(device->name),
-           cli_shown(stats_driver(device)));
+    puts(cli_shown(job->settings.scene));
+    stats_print_device("  device    ", job->device);
+    putchar('\n');
     for (uint32_t i = 0; i < count; ++i) {
         print_kernel(&kernels[i]);
         told += kernels[i].statistic_count;
@@ -51,12 +51,13 @@ static json_t *kernel_document(const whit_kernel *kernel)
     return object;
 }
 
-static int print_json(const struct job *job, const whit_device_info *info,
-                      const whit_kernel *kernels, uint32_t count)
+static int print_json(const struct job *job, const whit_kernel *kernels, uint32_t count)
 {
-    json_t *root = document_root(), *device = document_device(info);
+    whit_device_info info;
+    whit_device_get_info(job->device, &info);
+    json_t *root = document_root(), *device = document_device(&info);
     document_text(root, "file", job->settings.scene);
-    document_count(device, "subgroup_size", info->subgroup_size);
+    document_count(device, "subgroup_size", info.subgroup_size);
     document_put(root, "device", device);
     settings_describe(&job->settings, IN_SCENE, document_child(root, "picture"));
     json_t *list = document_list(root, "kernels");
@@ -68,7 +69,6 @@ static int print_json(const struct job *job, const whit_device_info *info,
 int kernels_run(struct job *job, bool json)
 {
     static whit_kernel kernels[WHIT_KERNELS_MAX];
-    whit_device_info device;
     uint32_t count = 0;
     whit_result result = job_build(job);
     if (result == WHIT_OK)
@@ -80,8 +80,6 @@ int kernels_run(struct job *job, bool json)
     }
     if (result != WHIT_OK)
         return cli_exit_of(result);
-    whit_device_get_info(job->device, &device);
-    int status =
-        json ? print_json(job, &device, kernels, count) : print_text(job, &device, kernels, count);
+    int status = json ? print_json(job, kernels, count) : print_text(job, kernels, count);
     return status == EXIT_FINE ? job_check_validation(job) : status;
 }

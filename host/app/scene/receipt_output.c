@@ -5,8 +5,6 @@
 static void print_head(const struct receipt *receipt)
 {
     const whit_renderer_params *picture = &receipt->job->settings.picture;
-    whit_device_info device;
-    whit_device_get_info(receipt->job->device, &device);
     printf("%s\n  picture   %u x %u, ", cli_shown(receipt->job->settings.scene), picture->width,
            picture->height);
     if (picture->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
@@ -15,7 +13,7 @@ static void print_head(const struct receipt *receipt)
         printf("%u sample%s a pixel, ", picture->sampling.count,
                picture->sampling.count == 1 ? "" : "s");
     printf("depth %u\n", picture->depth);
-    printf("  device    %s (%s)\n", cli_shown(device.name), cli_shown(stats_driver(&device)));
+    stats_print_device("  device    ", receipt->job->device);
     printf("  kernel    %u of %u instructions, %u of %u bindings\n", receipt->kernel.instructions,
            receipt->kernel.general_instructions, receipt->kernel.bindings,
            receipt->kernel.general_bindings);
