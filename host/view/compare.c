@@ -119,11 +119,10 @@ static void run_figures(void *context)
     struct compare_job *job = context;
     struct compare_figures *figures = &job->figures;
     const struct compare_pair *pair = &figures->pair;
-    const struct difference_side a = {pair->color[0], pair->ids[0]};
-    const struct difference_side b = {pair->color[1], pair->ids[1]};
     whit_image_info info;
     whit_image_get_info(pair->color[0], &info);
-    difference_measure(&a, &b, &figures->difference);
+    difference_measure(pair->color[0], pair->color[1], pair->ids[0], pair->ids[1],
+                       &figures->difference);
     figures->has_flip =
         info.channels > 1 && difference_flip(pair->color[0], pair->color[1], &figures->flip_mean,
                                              &figures->flip_largest);

@@ -30,17 +30,16 @@ static void measure_colors(const float *p, const float *q, uint32_t channels,
     out->mean = out->pixels > 0 ? sum / (counted * (double)out->pixels) : 0.0;
 }
 
-void difference_measure(const struct difference_side *a, const struct difference_side *b,
-                        struct difference *out)
+void difference_measure(const whit_image *color_a, const whit_image *color_b,
+                        const whit_image *ids_a, const whit_image *ids_b, struct difference *out)
 {
     whit_image_info info;
-    whit_image_get_info(a->color ? a->color : a->ids, &info);
+    whit_image_get_info(color_a ? color_a : ids_a, &info);
     *out = (struct difference){.pixels = (uint64_t)info.width * info.height};
-    if (a->ids && b->ids)
-        measure_ids(whit_image_words(a->ids), whit_image_words(b->ids), out);
-    if (a->color && b->color)
-        measure_colors(whit_image_floats(a->color), whit_image_floats(b->color), info.channels,
-                       out);
+    if (ids_a && ids_b)
+        measure_ids(whit_image_words(ids_a), whit_image_words(ids_b), out);
+    if (color_a && color_b)
+        measure_colors(whit_image_floats(color_a), whit_image_floats(color_b), info.channels, out);
 }
 
 bool difference_flip(const whit_image *a, const whit_image *b, double *mean, double *largest)

@@ -47,10 +47,9 @@ void engine_compare(const struct engine_kept *before, const struct engine_frame 
     if (!what[0])
         return;
     bool colors = before->color && after->settings.paint == PAINT_COLOR;
-    const struct difference_side a = {colors ? before->color : NULL, before->ids};
-    const struct difference_side b = {colors ? after->color : NULL, after->ids};
     struct difference difference;
-    difference_measure(&a, &b, &difference);
+    difference_measure(colors ? before->color : NULL, colors ? after->color : NULL, before->ids,
+                       after->ids, &difference);
     *change = (struct engine_change){
         .number = change->number + 1,
         .settings = after->settings,
