@@ -1,11 +1,11 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "app/arguments.h"
 #include "app/bvh/study.h"
 #include "app/commands.h"
+#include "base/threads.h"
 
 enum { RUNS_DEFAULT = 3, RAYS_DEFAULT = 100000, RAYS_MAX = 100000000, LIST_MAX = 1024 };
 
@@ -52,12 +52,6 @@ static bool read_builders(const struct setting *setting, const char *list, void 
     }
 }
 
-static uint32_t core_count(void)
-{
-    long cores = sysconf(_SC_NPROCESSORS_ONLN);
-    return cores < 1 ? 1 : cores > 64 ? 64 : (uint32_t)cores;
-}
-
 static bool read_threads(const struct setting *setting, const char *list, void *record, char *why)
 {
     static const struct setting one = {.kind = SETTING_COUNT, .max = 64};
@@ -73,7 +67,7 @@ static bool read_threads(const struct setting *setting, const char *list, void *
             return false;
         if (study->thread_count == STUDY_THREADS_MAX)
             return setting_refuse(why, ": more than %d numbers", STUDY_THREADS_MAX);
-        study->threads[study->thread_count++] = threads ? threads : core_count();
+        study->threads[study->thread_count++] = threads ? threads : threads_available();
         if (!item[length])
             return true;
         item += length + 1;
@@ -104,8 +98,8 @@ static const struct setting options[] = {
 static void default_threads(struct study *study)
 {
     study->threads[study->thread_count++] = 1;
-    if (core_count() > 1)
-        study->threads[study->thread_count++] = core_count();
+    if (threads_available() > 1)
+        study->threads[study->thread_count++] = threads_available();
 }
 
 static bool any_device(void)
