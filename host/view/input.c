@@ -26,10 +26,8 @@ static bool flies(const struct view_event *event)
 
 static void on_key(struct view *view, const struct view_event *event)
 {
-    bool known = event->key >= 0 && event->key < KEYS_MAX;
-    bool held = known && event->down && view->input.down[event->key];
-    if (known)
-        view->input.down[event->key] = event->down;
+    bool held = event->down && view->input.down[event->key];
+    view->input.down[event->key] = event->down;
     ui_key_event(view->ui, event->key, event->down);
     view->dirty |= ui_has_keys(view->ui);
     if (!event->down || ui_has_keys(view->ui) || flies(event))
@@ -98,8 +96,6 @@ static void on_move(struct view *view, const struct view_event *event)
 static void on_button(struct view *view, const struct view_event *event)
 {
     struct view_input *input = &view->input;
-    if (event->button < 0 || event->button > 2)
-        return;
     ui_button_event(view->ui, event->button, event->down);
     view->dirty = true;
     if (event->down && ui_has_mouse(view->ui))

@@ -6,7 +6,7 @@
 
 struct view;
 
-enum { KEYS_MAX = 320 };
+enum { KEYS_MAX = KEY_ALT + 1 };
 
 /* State of the mouse and of held keys. */
 struct view_input {

@@ -388,17 +388,13 @@ static const struct key_binding bindings[] = {
     {'F', 0, "F", "frame what is there", "frame what is under the mouse", pick_focus,
      .group = KEYS_CAMERA},
     {'1', 0, "1 2 3", "from front right above", "from the front", .turn = look_along, .by = 3,
-     .shows_name = true, .group = KEYS_CAMERA},
-    {'2', 0, NULL, NULL, "from the right", .turn = look_along, .by = 1, .shows_name = true,
      .group = KEYS_CAMERA},
-    {'3', 0, NULL, NULL, "from above", .turn = look_along, .by = 2, .shows_name = true,
-     .group = KEYS_CAMERA},
+    {'2', 0, NULL, NULL, "from the right", .turn = look_along, .by = 1, .group = KEYS_CAMERA},
+    {'3', 0, NULL, NULL, "from above", .turn = look_along, .by = 2, .group = KEYS_CAMERA},
     {'4', 0, "4 5 6", "from back left below", "from behind", .turn = look_along, .by = -3,
-     .shows_name = true, .group = KEYS_CAMERA},
-    {'5', 0, NULL, NULL, "from the left", .turn = look_along, .by = -1, .shows_name = true,
      .group = KEYS_CAMERA},
-    {'6', 0, NULL, NULL, "from below", .turn = look_along, .by = -2, .shows_name = true,
-     .group = KEYS_CAMERA},
+    {'5', 0, NULL, NULL, "from the left", .turn = look_along, .by = -1, .group = KEYS_CAMERA},
+    {'6', 0, NULL, NULL, "from below", .turn = look_along, .by = -2, .group = KEYS_CAMERA},
     {'0', 0, "0", "cameras: file's, whit's", "next camera", next_camera, .state = say_camera,
      .group = KEYS_CAMERA},
     {KEY_TAB, 0, "Tab", "settings, light, up", "settings by mouse", switch_settings,
@@ -525,7 +521,7 @@ bool key_act(struct view *view, int key, unsigned mods, bool held)
             keys[i].turn(view, keys[i].by);
         else
             keys[i].act(view);
-        if (keys[i].shows_name && view->camera_known)
+        if (keys[i].turn == look_along && view->camera_known)
             view_say(view, "%s", keys[i].name);
         view->dirty = true;
         return true;

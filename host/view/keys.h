@@ -25,7 +25,6 @@ struct key_binding {
     void (*turn)(struct view *view, int by); /* called instead of `act`; NULL: none */
     int by;                                  /* for `setting` and `turn` */
     enum key_group group;
-    bool shows_name; /* a message shows the name when the key is pressed */
 };
 const struct key_binding *key_bindings(uint32_t *count);
 /* Writes the state of a key; false: it has none. */

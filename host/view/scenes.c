@@ -40,8 +40,6 @@ static void read_camera(struct view *view, uint32_t index)
 
 void view_use_camera(struct view *view, int index)
 {
-    if (!view->scene || index < 0 || (uint32_t)index >= view->scene->info.camera_count)
-        return;
     read_camera(view, (uint32_t)index);
     view->file_camera = index;
     snprintf(view->settings.camera, sizeof view->settings.camera, "%d", index);

@@ -28,7 +28,7 @@ void scenes_watch(struct view *view);
 void scenes_read_again(struct view *view);
 /* The settings; but if their scene is not shown yet, those of the last picture. */
 const struct settings *scenes_shown(const struct view *view);
-/* Uses the camera of the scene with this index; -1: the text of the settings. */
+/* Uses the camera of the scene with this index. */
 void view_use_camera(struct view *view, int index);
 /* Sets view->camera and view->file_camera by the camera text of the settings. */
 void view_learn_camera(struct view *view);

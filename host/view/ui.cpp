@@ -436,8 +436,6 @@ void ui_mouse(struct ui *, float x, float y)
 // A press and its release between two frames also count as a click.
 void ui_button_event(struct ui *ui, int button, bool down)
 {
-    if (button < 0 || button > 2)
-        return;
     ui->down[button] = down;
     ui->pressed[button] |= down;
 }
@@ -450,8 +448,8 @@ void ui_wheel(struct ui *, float x, float y)
 
 void ui_key_event(struct ui *, int key, bool down)
 {
-    if (key >= 0 && key < IM_ARRAYSIZE(ImGuiIO::KeysDown))
-        ImGui::GetIO().KeysDown[key] = down;
+    static_assert(KEY_ALT < IM_ARRAYSIZE(ImGuiIO::KeysDown), "it is the last key");
+    ImGui::GetIO().KeysDown[key] = down;
 }
 
 void ui_character(struct ui *, uint32_t code_point)
