@@ -409,6 +409,14 @@ whit_result file_write_append(const whit_log *log, struct file_write *file, cons
     return WHIT_ERROR_OUTPUT;
 }
 
+whit_result file_write_end(const whit_log *log, struct file_write *file, whit_result result)
+{
+    if (result == WHIT_OK)
+        return file_write_commit(log, file);
+    file_write_abandon(file);
+    return result;
+}
+
 whit_result file_write_whole(const whit_log *log, const char *path, const void *data,
                              size_t size_bytes)
 {
@@ -416,11 +424,7 @@ whit_result file_write_whole(const whit_log *log, const char *path, const void *
     whit_result result = file_write_begin(log, path, &file);
     if (result != WHIT_OK)
         return result;
-    result = file_write_append(log, &file, data, size_bytes);
-    if (result == WHIT_OK)
-        return file_write_commit(log, &file);
-    file_write_abandon(&file);
-    return result;
+    return file_write_end(log, &file, file_write_append(log, &file, data, size_bytes));
 }
 
 bool file_exists(const char *path)

@@ -40,6 +40,9 @@ WHIT_CHECK whit_result file_write_commit(const whit_log *log, struct file_write 
 WHIT_CHECK whit_result file_write_append(const whit_log *log, struct file_write *file,
                                          const void *data, size_t size_bytes);
 void file_write_abandon(struct file_write *file);
+/* Commits where `result` is WHIT_OK, else abandons and gives `result`. */
+WHIT_CHECK whit_result file_write_end(const whit_log *log, struct file_write *file,
+                                      whit_result result);
 /* Begins the file, appends all of `data` and commits. */
 WHIT_CHECK whit_result file_write_whole(const whit_log *log, const char *path, const void *data,
                                         size_t size_bytes);

@@ -273,10 +273,7 @@ whit_result image_save(const whit_log *log, const struct image *image,
         result = png_write(&target, image);
         break;
     }
-    if (result == WHIT_OK)
-        return file_write_commit(log, &file);
-    file_write_abandon(&file);
-    return result;
+    return file_write_end(log, &file, result);
 }
 
 whit_result image_encode_png(const whit_log *log, const struct image *image, const whit_text *texts,

@@ -119,11 +119,7 @@ whit_result image_rows_commit(struct image_rows *rows)
         log_error(log, "%s: %u of %u rows", rows->target.path, rows->y, rows->shape.height);
         rows->result = WHIT_ERROR_USAGE;
     }
-    whit_result result = end(rows, whole);
-    if (result == WHIT_OK)
-        result = file_write_commit(log, &rows->file);
-    else
-        file_write_abandon(&rows->file);
+    whit_result result = file_write_end(log, &rows->file, end(rows, whole));
     free(rows);
     return result;
 }

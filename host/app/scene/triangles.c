@@ -27,11 +27,7 @@ whit_result triangles_write(const whit_scene *scene, double time_s, const char *
     result = whit_scene_triangles(scene, time_s, write_triangle, &writer);
     if (result == WHIT_ERROR_CANCELLED && writer.result != WHIT_OK)
         result = writer.result;
-    if (result == WHIT_OK) {
+    if (result == WHIT_OK)
         cli_set_saving();
-        result = file_write_commit(&cli_log, &writer.file);
-    } else {
-        file_write_abandon(&writer.file);
-    }
-    return result;
+    return file_write_end(&cli_log, &writer.file, result);
 }

@@ -148,12 +148,9 @@ static int work(struct job *job, struct trace *trace)
         result = trace_chunks(trace, renderer, &progress);
         if (result == WHIT_OK && cli_cancel)
             result = WHIT_ERROR_CANCELLED;
-        if (result == WHIT_OK) {
+        if (result == WHIT_OK)
             cli_set_saving();
-            result = file_write_commit(&cli_log, &trace->file);
-        } else {
-            file_write_abandon(&trace->file);
-        }
+        result = file_write_end(&cli_log, &trace->file, result);
     }
     cli_progress_finish(&progress);
     if (result == WHIT_OK)
