@@ -111,11 +111,13 @@ static whit_result create_renderers(struct views *views)
     return result;
 }
 
-/* Draws the picture and reads its pixels to the host. */
-static whit_result draw_picture(whit_renderer *renderer)
+/* Draws one picture, or where `count` is not 0 the views of as many cameras, and reads the pixels
+   to the host. */
+static whit_result draw_picture(whit_renderer *renderer, const whit_camera *cameras, uint32_t count)
 {
     whit_image *image = NULL;
-    whit_result result = whit_renderer_render(renderer);
+    whit_result result = count ? whit_renderer_render_views(renderer, cameras, count)
+                               : whit_renderer_render(renderer);
     if (result == WHIT_OK)
         result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
     whit_image_destroy(image);
@@ -126,22 +128,14 @@ static whit_result draw_side(struct views *views, enum side side)
 {
     whit_renderer *renderer = views->renderers[side];
     whit_renderer_params params = params_of(views, side);
-    whit_image *image = NULL;
     whit_result result = WHIT_OK;
-    if (side == ONE)
-        return draw_picture(renderer);
-    if (side == TOGETHER) {
-        result = whit_renderer_render_views(renderer, views->cameras, views->count);
-        if (result == WHIT_OK)
-            result = whit_renderer_image(renderer, WHIT_AOV_COLOR, &image);
-        whit_image_destroy(image);
-        return result;
-    }
+    if (side != APART)
+        return draw_picture(renderer, views->cameras, side == TOGETHER ? views->count : 0);
     for (uint32_t i = 0; result == WHIT_OK && i < views->count; i += APART_EVERY) {
         params.camera = views->cameras[i];
         result = whit_renderer_set_view(renderer, &params);
         if (result == WHIT_OK)
-            result = draw_picture(renderer);
+            result = draw_picture(renderer, NULL, 0);
     }
     return result;
 }
