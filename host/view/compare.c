@@ -216,8 +216,6 @@ bool compare_is_still(const struct view *view)
 
 static bool make_room(struct compare *compare, uint32_t width, uint32_t height)
 {
-    if (compare->mixed && compare->mixed_width == width && compare->mixed_height == height)
-        return true;
     uint8_t *mixed = realloc(compare->mixed, (size_t)width * height * 4);
     if (!mixed)
         return false;

@@ -35,7 +35,7 @@ void engine_wake(struct engine *engine)
 {
     pthread_cond_broadcast(&engine->news);
     if (engine->params.wake)
-        engine->params.wake(engine->params.wake_user);
+        engine->params.wake(NULL);
 }
 
 bool engine_is_done(const struct engine_lane *lane)

@@ -15,7 +15,6 @@ struct engine_params {
     bool refine, times;       /* see engine_set_rest */
     bool time_stages;         /* see engine_time_stages */
     void (*wake)(void *user); /* called from any thread: something can be taken. May be NULL */
-    void *wake_user;
     whit_shader_compiler *compiler; /* for settings.shader; its log is silent. NULL: no shaders */
     whit_log log; /* called from any thread, for the validation layers; may be silent */
 };

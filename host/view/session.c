@@ -1,5 +1,6 @@
 #include "view/session.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "whit/whit_program.h"
 
 #include <stdarg.h>
@@ -60,12 +61,11 @@ WHIT_PRINTF(2, 3)
 static void add_error(struct session *session, const char *format, ...)
 {
     char line[SESSION_ERROR];
-    size_t used = strlen(session->errors);
     va_list args;
     va_start(args, format);
     vsnprintf(line, sizeof line, format, args);
     va_end(args);
-    snprintf(session->errors + used, sizeof session->errors - used, "%s%s", used ? "\n" : "", line);
+    text_add(session->errors, sizeof session->errors, "%s%s", session->errors[0] ? "\n" : "", line);
     log_error(&session->log, "%s", line);
 }
 
@@ -76,14 +76,12 @@ static void log_shader_errors(struct session *session, const whit_shader_compile
     uint32_t count = whit_shader_compiler_errors(compiler, &errors);
     uint32_t left = whit_shader_compiler_errors_left(compiler);
     for (uint32_t i = 0; i < count; ++i) {
-        const whit_shader_error *error = &errors[i];
-        if (error->column)
-            add_error(session, "%s:%u:%u: %s", error->file, error->line, error->column,
-                      error->reason);
-        else if (error->line)
-            add_error(session, "%s:%u: %s", error->file, error->line, error->reason);
-        else
-            add_error(session, "%s: %s", error->file, error->reason);
+        char place[32] = "";
+        if (errors[i].line)
+            text_add(place, sizeof place, ":%u", errors[i].line);
+        if (errors[i].column)
+            text_add(place, sizeof place, ":%u", errors[i].column);
+        add_error(session, "%s%s: %s", errors[i].file, place, errors[i].reason);
     }
     if (left > 0)
         add_error(session, "and %u more errors", left);
