@@ -85,7 +85,7 @@ struct reached {
 
 struct saves {
     struct bench *bench;
-    struct reached reached[MUSTS];
+    struct reached reached[MUSTS + 1]; /* the last one is of scenes that have no limits */
     struct bench_scene loaded;
     whit_shader_compiler *compiler;
     whit_log silent;
@@ -377,30 +377,19 @@ static void put_row(struct table *table, const char *scene, const struct edited 
     table_keep(table, row);
 }
 
-/* NULL: the scene has no limits. */
 static struct reached *reached_of(struct saves *s, const char *scene)
 {
-    for (int i = 0; i < MUSTS; ++i) {
-        if (strcmp(musts[i].scene, scene) == 0)
-            return &s->reached[i];
-    }
-    return NULL;
-}
-
-static void keep_reached(struct saves *s, const char *scene, uint32_t edit,
-                         const struct save_times *times)
-{
-    struct reached *reached = reached_of(s, scene);
-    if (!reached)
-        return;
-    reached->saves_ms[edit][0] = quantile(&times->first, 0.95);
-    reached->saves_ms[edit][1] = quantile(&times->whole, 0.95);
+    size_t i = 0;
+    while (i < MUSTS && strcmp(musts[i].scene, scene) != 0)
+        ++i;
+    return &s->reached[i];
 }
 
 /* Errors are measured only with the first function, as the broken file is the same for all. */
 static whit_result measure_saves(struct saves *s, struct table *table, const char *scene,
                                  const char *path)
 {
+    struct reached *reached = reached_of(s, scene);
     whit_result result = WHIT_OK;
     for (uint32_t i = 0; result == WHIT_OK && i < EDITS; ++i) {
         struct save_times times = {.first = {.count = 0}};
@@ -408,7 +397,8 @@ static whit_result measure_saves(struct saves *s, struct table *table, const cha
         result = view_saves(s, path, i, &times);
         if (result == WHIT_OK) {
             put_row(table, scene, &edits[i], &times);
-            keep_reached(s, scene, i, &times);
+            reached->saves_ms[i][0] = quantile(&times.first, 0.95);
+            reached->saves_ms[i][1] = quantile(&times.whole, 0.95);
         }
     }
     return result;
@@ -454,8 +444,7 @@ static whit_result measure_fuel(struct saves *s, struct table *table, const char
               "with --trust; the median ratio is %.3f.",
               scene, ratio.count, sample_of(&s->loops[0]).median, sample_of(&s->loops[1]).median,
               sample_of(&ratio).median);
-    if (reached_of(s, scene))
-        reached_of(s, scene)->fuel = sample_of(&ratio).median;
+    reached_of(s, scene)->fuel = sample_of(&ratio).median;
     return WHIT_OK;
 }
 
@@ -522,8 +511,7 @@ static whit_result measure_tests(struct saves *s, struct table *table, const cha
     table_say(table, "%s, %d checks of %d seeds, from the file on: p50 %.0f ms, p95 %.0f ms of %u.",
               scene, TESTS * CHECKS_EACH, WHIT_TEST_SEEDS, quantile(&s->tests, 0.5),
               quantile(&s->tests, 0.95), s->tests.count);
-    if (reached_of(s, scene))
-        reached_of(s, scene)->tests_ms = quantile(&s->tests, 0.95);
+    reached_of(s, scene)->tests_ms = quantile(&s->tests, 0.95);
     return WHIT_OK;
 }
 
@@ -540,7 +528,7 @@ static whit_result run_scene(struct saves *s, struct table *table, const char *s
         table_say(table,
                   "%s, from a save to its error in the window: p50 %.0f ms, p95 %.0f ms of %u.",
                   scene, quantile(&s->errors, 0.5), quantile(&s->errors, 0.95), s->errors.count);
-    if (result == WHIT_OK && reached_of(s, scene))
+    if (result == WHIT_OK)
         reached_of(s, scene)->error_ms = quantile(&s->errors, 0.95);
     if (result == WHIT_OK)
         result = bench_load_trees(path, &s->loaded);
