@@ -22,9 +22,7 @@ static whit_result alloc_rays(struct study_rays *rays, uint32_t count)
 {
     rays->rays = malloc((count ? count : 1) * sizeof *rays->rays);
     rays->count = count;
-    if (rays->rays)
-        return WHIT_OK;
-    return cli_no_memory();
+    return rays->rays ? WHIT_OK : cli_no_memory();
 }
 
 /* ---- Primary ---- */

@@ -131,7 +131,7 @@ static whit_result trace_kinds(struct tracing *tracing)
     return result;
 }
 
-static bool tracing_alloc(struct tracing *tracing)
+static whit_result tracing_alloc(struct tracing *tracing)
 {
     const struct study *study = tracing->study;
     size_t count = study->rays[STUDY_PRIMARY].count;
@@ -143,9 +143,7 @@ static bool tracing_alloc(struct tracing *tracing)
     tracing->hits = calloc(count, sizeof(whit_hit));
     tracing->rates =
         calloc((size_t)STUDY_KINDS * study->row_count * study->run_count, sizeof *tracing->rates);
-    if (all && tracing->hits && tracing->rates)
-        return true;
-    return CLI_FAIL(false, "out of memory");
+    return all && tracing->hits && tracing->rates ? WHIT_OK : cli_no_memory();
 }
 
 static void tracing_free(struct tracing *tracing)
@@ -160,8 +158,8 @@ whit_result study_trace(struct study *study)
 {
     struct tracing tracing = {.study = study};
     whit_result result = study_primary_rays(study);
-    if (result == WHIT_OK && !tracing_alloc(&tracing))
-        result = WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK)
+        result = tracing_alloc(&tracing);
     if (result == WHIT_OK)
         result = create_renderers(study);
     if (result == WHIT_OK)

@@ -143,7 +143,16 @@ static void put_number(const struct compare *compare, json_t *object, const char
     document_number(object, key, compare->info.integers ? (double)NAN : value);
 }
 
-static bool is_within(const struct compare *compare);
+/* Pixels that are not finite in only one of the two pictures are in no mean, so with such pixels no
+   tolerance for a mean is met. */
+static bool is_within(const struct compare *compare)
+{
+    const whit_difference *found = &compare->found;
+    bool sees_all = compare->metric >= METRIC_OVER;
+    if (found->nonfinite_differing && !sees_all)
+        return false;
+    return fabs(value_of(compare, compare->metric)) <= compare->tolerance;
+}
 
 static whit_result save_json(const struct compare *compare)
 {
@@ -179,17 +188,6 @@ static whit_result save_json(const struct compare *compare)
 }
 
 /* ---- Tolerance ---- */
-
-/* Pixels that are not finite in only one of the two pictures are in no mean, so with such pixels no
-   tolerance for a mean is met. */
-static bool is_within(const struct compare *compare)
-{
-    const whit_difference *found = &compare->found;
-    bool sees_all = compare->metric >= METRIC_OVER;
-    if (found->nonfinite_differing && !sees_all)
-        return false;
-    return fabs(value_of(compare, compare->metric)) <= compare->tolerance;
-}
 
 static int judge(const struct compare *compare)
 {

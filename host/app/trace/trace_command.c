@@ -98,9 +98,7 @@ static whit_result allocate(struct trace *trace)
     /* A small file touches only the first pages of these blocks. */
     trace->rays = malloc((size_t)CHUNK * sizeof *trace->rays);
     trace->hits = malloc((size_t)CHUNK * sizeof *trace->hits);
-    if (trace->rays && trace->hits)
-        return WHIT_OK;
-    return cli_no_memory();
+    return trace->rays && trace->hits ? WHIT_OK : cli_no_memory();
 }
 
 static whit_result prepare(struct job *job, struct trace *trace, whit_renderer **renderer)
