@@ -264,16 +264,11 @@ void event_to_line(const struct view_event *event, FILE *to)
 
 /* ---- Files ---- */
 
-struct list {
-    struct view_event *events;
-    uint32_t count, capacity;
-};
-
-/* `text` ends with a 0; ends of lines in it are overwritten. */
-static whit_result read_lines(const whit_log *log, const char *path, char *text, struct list *list)
+/* The text ends with a 0; ends of lines in it are overwritten. */
+static whit_result read_lines(const whit_log *log, const char *path, struct event_list *list)
 {
     uint32_t line = 1;
-    for (char *at = text; at; ++line) {
+    for (char *at = (char *)list->text; at; ++line) {
         struct view_event events[EVENTS_A_LINE];
         int count;
         char *end = strpbrk(at, "\r\n");
@@ -295,44 +290,21 @@ static whit_result read_lines(const whit_log *log, const char *path, char *text,
     return WHIT_OK;
 }
 
-/* Joins the events and the text that they point to in one block, in place of list->events. */
-static bool join(struct list *list, const char *text, size_t bytes)
+whit_result events_load(const whit_log *log, const char *path, struct event_list *list)
 {
-    size_t list_bytes = list->count * sizeof *list->events;
-    struct view_event *events = realloc(list->events, list_bytes + bytes + 1);
-    if (!events)
-        return false;
-    char *copy = (char *)events + list_bytes;
-    memcpy(copy, text, bytes + 1);
-    for (uint32_t i = 0; i < list->count; ++i) {
-        if (events[i].path)
-            events[i].path = copy + (events[i].path - text);
-    }
-    list->events = events;
-    return true;
+    size_t bytes;
+    *list = (struct event_list){0};
+    whit_result result = file_read(log, NULL, path, REPLAY_BYTES_MAX, &list->text, &bytes);
+    if (result == WHIT_OK)
+        result = read_lines(log, path, list);
+    if (result != WHIT_OK)
+        events_finish(list);
+    return result;
 }
 
-whit_result events_load(const whit_log *log, const char *path, struct view_event **events,
-                        uint32_t *count)
+void events_finish(struct event_list *list)
 {
-    struct list list = {0};
-    uint8_t *text = NULL;
-    size_t bytes = 0;
-    *events = NULL;
-    *count = 0;
-    whit_result result = file_read(log, NULL, path, REPLAY_BYTES_MAX, &text, &bytes);
-    if (result == WHIT_OK)
-        result = read_lines(log, path, (char *)text, &list);
-    if (result == WHIT_OK && !join(&list, (const char *)text, bytes)) {
-        log_error(log, "%s: out of memory", path);
-        result = WHIT_ERROR_MEMORY;
-    }
-    free(text);
-    if (result != WHIT_OK) {
-        free(list.events);
-        return result;
-    }
-    *events = list.events;
-    *count = list.count;
-    return WHIT_OK;
+    free(list->events);
+    free(list->text);
+    *list = (struct event_list){0};
 }

@@ -97,8 +97,14 @@ bool events_from_line(const whit_log *log, const char *file, uint32_t line, cons
 /* Writes an event as a line that events_from_line reads; nothing for events that have no line. */
 void event_to_line(const struct view_event *event, FILE *to);
 
-/* Reads all events of a file; *events is one block with all that they point to: free() it. */
-WHIT_CHECK whit_result events_load(const whit_log *log, const char *path,
-                                   struct view_event **events, uint32_t *count);
+/* All events of a file. */
+struct event_list {
+    struct view_event *events;
+    uint32_t count, capacity;
+    uint8_t *text; /* of the file: the events point into it */
+};
+/* After an error the list is empty. */
+WHIT_CHECK whit_result events_load(const whit_log *log, const char *path, struct event_list *list);
+void events_finish(struct event_list *list);
 
 #endif

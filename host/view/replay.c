@@ -15,8 +15,8 @@ static const double LOOK_MS = 20.0; /* time between checks of what is waited for
 static const double TURN_MS = 50.0; /* `wait` moves the replay's clock by steps of this */
 
 struct replay {
-    struct view_event *events;
-    uint32_t count, at;
+    struct event_list list;
+    uint32_t at;
     double wait_until_ms; /* end of a `wait`; 0: not waiting */
     bool asked;           /* the window manager was asked to minimise or restore */
 };
@@ -39,13 +39,13 @@ whit_result replay_open(struct view *view)
     view->replay = array_alloc_zeroed(1, sizeof *view->replay);
     if (!view->replay)
         return WHIT_ERROR_MEMORY;
-    return events_load(&view->log, params->replay, &view->replay->events, &view->replay->count);
+    return events_load(&view->log, params->replay, &view->replay->list);
 }
 
 void replay_close(struct view *view)
 {
     if (view->replay)
-        free(view->replay->events);
+        events_finish(&view->replay->list);
     free(view->replay);
     view->replay = NULL;
     if (view->record && fclose(view->record) != 0)
@@ -55,7 +55,7 @@ void replay_close(struct view *view)
 
 bool replay_is_over(const struct view *view)
 {
-    return view->replay && view->replay->at == view->replay->count && !view->shot[0];
+    return view->replay && view->replay->at == view->replay->list.count && !view->shot[0];
 }
 
 /* ---- What is waited for ---- */
@@ -245,17 +245,17 @@ static bool replay_event(struct view *view, const struct view_event *event)
 void replay_step(struct view *view)
 {
     struct replay *replay = view->replay;
-    while (replay && replay->at < replay->count && !view->quit && !view->shot[0] &&
-           replay_event(view, &replay->events[replay->at]))
+    while (replay && replay->at < replay->list.count && !view->quit && !view->shot[0] &&
+           replay_event(view, &replay->list.events[replay->at]))
         ++replay->at;
 }
 
 double replay_wait_s(struct view *view)
 {
     const struct replay *replay = view->replay;
-    if (!replay || replay->at == replay->count)
+    if (!replay || replay->at == replay->list.count)
         return HUGE_VAL;
-    const struct view_event *event = &replay->events[replay->at];
+    const struct view_event *event = &replay->list.events[replay->at];
     if (event->kind == EVENT_WAIT && replay->wait_until_ms > 0.0)
         return view->time.turned ? 0.0 : (replay->wait_until_ms - view_now_ms(view)) * 1e-3;
     return is_there(view, event) ? 0.0 : LOOK_MS * 1e-3;

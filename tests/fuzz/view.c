@@ -55,17 +55,17 @@ static void check_line(const struct view_event *event)
 
 static void read_events(const char *path)
 {
-    struct view_event *events;
-    uint32_t count;
+    struct event_list list;
     fuzz_log_clear();
-    whit_result result = events_load(&fuzz_log, path, &events, &count);
+    whit_result result = events_load(&fuzz_log, path, &list);
     fuzz_check_errors(result, path);
-    fuzz_check(result == WHIT_OK || (!events && !count), "events of a file that is refused");
-    for (uint32_t i = 0; i < count; i++) {
-        fuzz_check(isfinite(events[i].x) && isfinite(events[i].y), "a place that is nowhere");
-        check_line(&events[i]);
+    fuzz_check(result == WHIT_OK || !list.count, "events of a file that is refused");
+    for (uint32_t i = 0; i < list.count; i++) {
+        const struct view_event *event = &list.events[i];
+        fuzz_check(isfinite(event->x) && isfinite(event->y), "a place that is nowhere");
+        check_line(event);
     }
-    free(events);
+    events_finish(&list);
 }
 
 /* Whatever its name is. */
