@@ -12,11 +12,6 @@ enum { PAIRS = 9, PAIRS_MIN = ENGINE_PAIRS_MIN };
 static const double ENOUGH_MS = 5e3, PATIENCE_MS = 20e3;
 const char ENGINE_TURNS_STOPPED[] = "something else came first";
 
-struct turn {
-    struct engine *engine;
-    struct engine_turns *turns;
-};
-
 bool engine_is_idle(const struct engine *engine)
 {
     for (int i = 0; i < ENGINE_LANES; ++i) {
@@ -31,9 +26,8 @@ bool engine_is_idle(const struct engine *engine)
 /* Draws one picture of one side; called with engine->lock held, which is released meanwhile. */
 static whit_result draw_turn(void *user, uint32_t way, uint32_t round)
 {
-    const struct turn *turn = user;
-    struct engine *engine = turn->engine;
-    struct engine_turns *turns = turn->turns;
+    struct engine_turns *turns = user;
+    struct engine *engine = turns->engine;
     struct engine_task task = {.settings = turns->settings[way],
                                .quality = ENGINE_WHOLE,
                                .divisor = 1,
@@ -92,12 +86,12 @@ static const char *why_not(const struct engine *engine, const struct engine_turn
 const char *engine_turns_measure(struct engine *engine, struct engine_turns *turns,
                                  struct sample_median *difference)
 {
-    struct turn turn = {engine, turns};
     double differences[PAIRS];
     struct sample_runs *before = &turns->ms[0], *after = &turns->ms[1];
     before->count = after->count = 0;
+    turns->engine = engine;
     turns->start_ms = whit_clock_ms();
-    whit_result result = sample_in_turns(2, PAIRS, draw_turn, &turn);
+    whit_result result = sample_in_turns(2, PAIRS, draw_turn, turns);
     uint32_t pairs = before->count < after->count ? before->count : after->count;
     show_again(engine);
     if (pairs < PAIRS_MIN)

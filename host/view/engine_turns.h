@@ -7,6 +7,7 @@
 
 /* Two pictures that are drawn in turns, before and after a change; used by the drawing thread. */
 struct engine_turns {
+    struct engine *engine; /* set by engine_turns_measure */
     struct settings settings[2];
     struct sample_runs ms[2]; /* times of drawing */
     double start_ms;
