@@ -126,11 +126,11 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
 static bool note_change(struct engine *engine, const struct engine_frame *frame)
 {
     struct engine_change change = engine->change; /* which no other thread writes */
-    struct engine_kept before = engine->last;
+    struct engine_kept *whole = &engine->lanes[0].whole, before = *whole;
     bool same = engine_is_same(&before, frame);
     engine_compare(&before, frame, &change);
-    engine->last = (struct engine_kept){0};
-    engine_keep(&engine->last, frame);
+    *whole = (struct engine_kept){0};
+    engine_keep(whole, frame);
     pthread_mutex_lock(&engine->lock);
     bool compared = change.number != engine->change.number;
     engine->change = change;
@@ -281,13 +281,13 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
     settings_expose(&task->settings, &session->scene->info);
     whit_result result = settings_choose_camera(&task->settings, session->scene->scene);
     if (result == WHIT_OK && follows)
-        engine_refine_join(engine, task);
+        engine_refine_join(task);
     if (result == WHIT_OK)
         result = engine_draw(task, &frame);
     bool whole = result == WHIT_OK && frame.whole, window = lane == &engine->lanes[0];
     bool same = whole && window && note_change(engine, &frame);
     if (whole && !window)
-        engine_keep(&engine->other, &frame);
+        engine_keep(&lane->whole, &frame);
     pthread_mutex_lock(&engine->lock);
     if (result == WHIT_OK)
         engine_note_time(lane, &frame);
@@ -470,16 +470,15 @@ uint32_t engine_destroy(struct engine *engine)
             engine_drop_session(engine, engine->sessions[i]);
     }
     uint32_t validation = engine->validation;
-    for (int i = 0; i < ENGINE_LANES; ++i)
-        engine_frame_finish(&engine->lanes[i].frame);
-    engine_kept_finish(&engine->last);
-    engine_kept_finish(&engine->other);
+    for (int i = 0; i < ENGINE_LANES; ++i) {
+        struct engine_lane *lane = &engine->lanes[i];
+        engine_frame_finish(&lane->frame);
+        engine_refine_stop(&lane->refine);
+        engine_kept_finish(&lane->whole);
+        engine_kept_finish(&lane->single);
+    }
     engine_kept_finish(&engine->reloading.before);
     engine_flip_destroy(engine->flip);
-    for (int i = 0; i < ENGINE_LANES; ++i) {
-        engine_refine_stop(&engine->refine[i]);
-        engine_kept_finish(&engine->single[i]);
-    }
     for (int i = 0; i < 2; ++i)
         shader_ref_drop(engine->versions[i]);
     engine_probe_finish(&engine->probe);

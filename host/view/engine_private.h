@@ -46,11 +46,15 @@ struct engine_lane {
     uint64_t place;   /* engine.places when the last picture was drawn */
     uint32_t shown;   /* divisor of the last picture */
     struct pace pace; /* of its session */
+    /* For the drawing thread: */
+    struct engine_refine refine;
+    struct engine_kept whole;  /* the last whole picture */
+    struct engine_kept single; /* the picture of one sample that `refine` goes on with; without ids:
+                                  none */
 };
 
 struct engine {
     struct engine_params params;
-    struct engine_refine refine[ENGINE_LANES];
     bool refining; /* samples are being added to a picture now */
     struct engine_reload reload;
     struct engine_reloading reloading;
@@ -100,10 +104,6 @@ struct engine {
     uint32_t probe_x, probe_y;
     uint64_t probes;
     struct engine_probe probe; /* the newest probe; number 0: it was taken */
-    struct engine_kept last;   /* A's last whole picture; for the drawing thread */
-    struct engine_kept other;  /* B's last whole picture; likewise */
-    /* By lane: the picture of one sample that `refine` goes on with; without ids: none. */
-    struct engine_kept single[ENGINE_LANES];
 };
 
 /* Called with engine->lock held. */

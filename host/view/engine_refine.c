@@ -309,28 +309,26 @@ static bool has_post(const struct session *session)
 void engine_refine_take(struct engine *engine, const struct engine_task *task, bool same,
                         struct engine_frame *frame)
 {
-    size_t index = (size_t)(task->lane - engine->lanes);
-    struct engine_refine *refine = &engine->refine[index];
-    struct engine_kept *single = &engine->single[index];
-    const struct engine_kept *kept = index ? &engine->other : &engine->last;
+    struct engine_lane *lane = task->lane;
+    struct engine_refine *refine = &lane->refine;
     if (task->quality == ENGINE_FULL && engine_doubles(&task->settings)) {
-        engine_keep(single, frame);
+        engine_keep(&lane->single, frame);
         begin(refine, frame);
     }
     if (!frame->whole)
         return;
     if (task->refine)
         finish_whole(refine, frame);
-    else if (!(same && !engine->lanes[1].wanted && keep(refine, kept, task->session, frame)))
+    else if (!(same && !engine->lanes[1].wanted &&
+               keep(refine, &lane->whole, task->session, frame)))
         begin(refine, frame);
-    engine_kept_finish(single);
+    engine_kept_finish(&lane->single);
 }
 
-void engine_refine_join(struct engine *engine, struct engine_task *task)
+void engine_refine_join(struct engine_task *task)
 {
-    size_t index = (size_t)(task->lane - engine->lanes);
-    struct engine_refine *refine = &engine->refine[index];
-    const struct engine_kept *single = &engine->single[index];
+    struct engine_refine *refine = &task->lane->refine;
+    const struct engine_kept *single = &task->lane->single;
     if (!engine_doubles(&task->settings) || has_post(task->session) || !single->ids ||
         refine->samples == 0 || refine->samples >= task->settings.picture.sampling.count ||
         !settings_same(&refine->base.settings, &task->settings))
@@ -340,10 +338,9 @@ void engine_refine_join(struct engine *engine, struct engine_task *task)
 }
 
 /* Whether the lane's picture is drawn, was taken, and can be refined. */
-static bool is_ready(const struct engine *engine, int index)
+static bool is_ready(const struct engine_lane *lane)
 {
-    const struct engine_lane *lane = &engine->lanes[index];
-    return engine->refine[index].samples > 0 && lane->session && !has_post(lane->session) &&
+    return lane->refine.samples > 0 && lane->session && !has_post(lane->session) &&
            engine_is_done(lane) && !lane->failed && !lane->moving && lane->frame.number == 0;
 }
 
@@ -352,36 +349,33 @@ static bool is_ready(const struct engine *engine, int index)
    left to do. */
 static struct engine_lane *lane_of_two(struct engine *engine)
 {
-    const struct engine_refine *a = &engine->refine[0], *b = &engine->refine[1];
-    if (!is_ready(engine, 1) || a->base.samples != b->base.samples)
+    const struct engine_refine *a = &engine->lanes[0].refine, *b = &engine->lanes[1].refine;
+    if (!is_ready(&engine->lanes[1]) || a->base.samples != b->base.samples)
         return NULL;
     if (a->samples == b->samples && ((a->settled && b->settled) || a->ended || b->ended))
         return NULL;
-    int index = b->samples < a->samples;
-    return engine->refine[index].ended ? NULL : &engine->lanes[index];
+    struct engine_lane *lane = &engine->lanes[b->samples < a->samples];
+    return lane->refine.ended ? NULL : lane;
 }
 
 struct engine_lane *engine_refine_lane(struct engine *engine)
 {
-    const struct engine_refine *refine = &engine->refine[0];
-    if (!engine->params.refine || !is_ready(engine, 0) || engine->job || engine->probe_wanted)
+    struct engine_lane *lane = engine->lanes;
+    if (!engine->params.refine || !is_ready(lane) || engine->job || engine->probe_wanted)
         return NULL;
     if (engine->lanes[1].wanted)
         return lane_of_two(engine);
-    return refine->settled || refine->ended ? NULL : &engine->lanes[0];
+    return lane->refine.settled || lane->refine.ended ? NULL : lane;
 }
 
-void engine_refine_restart(struct engine *engine, struct engine_lane *lane)
+void engine_refine_restart(struct engine_lane *lane)
 {
-    const struct engine_refine *refine = &engine->refine[lane - engine->lanes];
-    if (refine->samples > refine->base.samples && engine_is_done(lane))
+    if (lane->refine.samples > lane->refine.base.samples && engine_is_done(lane))
         lane->quality = ENGINE_FULL;
 }
 
 void engine_refine_one(struct engine *engine, struct engine_lane *lane)
 {
-    struct engine_refine *refine = &engine->refine[lane - engine->lanes];
-    const struct engine_kept *kept = lane == engine->lanes ? &engine->last : &engine->other;
     struct session *session = lane->session;
     struct engine_frame frame;
     uint64_t asked = lane->asked;
@@ -392,14 +386,14 @@ void engine_refine_one(struct engine *engine, struct engine_lane *lane)
     engine->refining = true;
     engine->brief = false;
     pthread_mutex_unlock(&engine->lock);
-    whit_result result = draw_next(session, refine, kept, &frame);
+    whit_result result = draw_next(session, &lane->refine, &lane->whole, &frame);
     pthread_mutex_lock(&engine->lock);
     engine->drawing = NULL;
     engine->refining = false;
     if (result == WHIT_ERROR_DEVICE)
         engine_lose_device(engine, session);
     if (result != WHIT_OK && result != WHIT_ERROR_CANCELLED)
-        refine->ended = true; /* the last picture stays */
+        lane->refine.ended = true; /* the last picture stays */
     if (frame.color && lane->asked == asked && lane->wanted) {
         frame.number = ++lane->frames;
         frame.first = lane->first;

@@ -27,7 +27,7 @@ bool engine_refines(const struct settings *settings);
 bool engine_doubles(const struct settings *settings);
 /* Lets the task's picture of all samples continue the picture of one sample that is shown, if its
    refine has that. Called with engine->lock held. */
-void engine_refine_join(struct engine *engine, struct engine_task *task);
+void engine_refine_join(struct engine_task *task);
 /* Draws only the samples of the task that its refine does not have, and shows steps on the way.
    Called without engine->lock. *frame then has colours, ids and statistics. */
 WHIT_CHECK whit_result engine_refine_whole(const struct engine_task *task,
@@ -47,7 +47,7 @@ struct engine_lane *engine_refine_lane(struct engine *engine);
 void engine_refine_one(struct engine *engine, struct engine_lane *lane);
 /* Lets a picture with more samples than its settings say be drawn again, as the other side begins
    anew. Called with engine->lock held. */
-void engine_refine_restart(struct engine *engine, struct engine_lane *lane);
+void engine_refine_restart(struct engine_lane *lane);
 /* Stops refining for a request; the part that was being drawn is drawn again later. Called with
    engine->lock held. */
 void engine_refine_pause(struct engine *engine);

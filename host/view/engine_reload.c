@@ -39,7 +39,7 @@ static void start_flip(struct engine *engine)
         *flip = (struct engine_flip){.engine = engine,
                                      .number = engine->reload.number,
                                      .before = whit_image_share(engine->reloading.before.color),
-                                     .after = whit_image_share(engine->last.color)};
+                                     .after = whit_image_share(engine->lanes[0].whole.color)};
         flip->thread = flip->after ? thread_start(run_flip, flip) : NULL;
     }
     engine_kept_finish(&engine->reloading.before);

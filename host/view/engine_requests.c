@@ -83,7 +83,7 @@ void engine_ask(struct engine *engine, const struct settings *settings, bool mov
     bool anew = !settings_same(&engine->lanes[0].settings, settings);
     ask(engine, &engine->lanes[0], settings, moving);
     if (other->wanted && anew)
-        engine_refine_restart(engine, other);
+        engine_refine_restart(other);
     if (other->wanted) {
         struct settings there = other->settings;
         settings_set_camera(&there, settings);
@@ -99,7 +99,7 @@ void engine_ask_other(struct engine *engine, const struct settings *settings)
     if (settings) {
         /* Pictures side by side have the same number of samples. */
         if (!other->wanted)
-            engine_refine_restart(engine, &engine->lanes[0]);
+            engine_refine_restart(&engine->lanes[0]);
         ask(engine, other, settings, engine->lanes[0].moving);
     } else {
         other->wanted = false;
