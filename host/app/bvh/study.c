@@ -51,33 +51,25 @@ static whit_result build_once(struct study *study, struct study_row *row, uint32
     return check_same(row, &info);
 }
 
-struct building {
-    struct study *study;
-    double *times_ms; /* [list][run]; a list is a row with a number of threads */
-};
-
 static whit_result build_list(void *user, uint32_t list, uint32_t run)
 {
-    const struct building *building = user;
-    struct study *study = building->study;
+    struct study *study = user;
     whit_result result = build_once(study, &study->rows[list % study->row_count],
                                     study->threads[list / study->row_count],
-                                    &building->times_ms[(size_t)list * study->run_count + run]);
+                                    &study->times_ms[(size_t)list * study->run_count + run]);
     return result == WHIT_OK ? study_step(study) : result;
 }
 
 whit_result study_build(struct study *study)
 {
     uint32_t runs = study->run_count, lists = study->row_count * study->thread_count;
-    double *times_ms = calloc((size_t)lists * runs, sizeof *times_ms);
-    if (!times_ms)
+    study->times_ms = calloc((size_t)lists * runs, sizeof *study->times_ms);
+    if (!study->times_ms)
         return cli_no_memory();
-    struct building building = {.study = study, .times_ms = times_ms};
-    whit_result result = sample_in_turns(lists, runs, build_list, &building);
+    whit_result result = sample_in_turns(lists, runs, build_list, study);
     for (uint32_t list = 0; result == WHIT_OK && list < lists; ++list)
         study->rows[list % study->row_count].build_ms[list / study->row_count] =
-            sample_sum_up(&times_ms[(size_t)list * runs], runs);
-    free(times_ms);
+            sample_sum_up(&study->times_ms[(size_t)list * runs], runs);
     return result;
 }
 
@@ -104,6 +96,7 @@ void study_finish(struct study *study)
     }
     for (uint32_t k = 0; k < STUDY_KINDS; ++k)
         free(study->rays[k].rays);
+    free(study->times_ms);
     cli_progress_finish(&study->progress);
     job_finish(&study->job);
 }

@@ -32,6 +32,7 @@ struct study {
 
     struct cli_progress progress;
     uint32_t steps, steps_done;
+    double *times_ms; /* of builds, [list][run]; a list is a row with a number of threads */
     struct study_rays rays[STUDY_KINDS];
     uint64_t compared, differing; /* numbers of hits */
     bool traced;
