@@ -201,7 +201,7 @@ void price_draw(struct view *view)
         return;
     prices_get_state(view->prices, &state);
     if (ui_window_begin("Prices", 1.0f, 0.0f, 440.0f, 640.0f, false, &open)) {
-        if (!settings_same_place(&state.settings, &view->settings))
+        if (!settings_same_place(state.settings, &view->settings))
             ui_text_color(UI_COLOR_WARNING, "of another view: press P twice");
         if (!state.finished) {
             char text[PRICES_TEXT + 32];

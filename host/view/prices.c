@@ -3,7 +3,6 @@
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/platform.h"
 #include "base/threads.h"
@@ -17,10 +16,8 @@ struct prices {
     struct prices_params params; /* holds a reference to its scene */
     volatile bool cancel;
     /* Under the lock. */
-    bool finished, news;
-    double done, seconds_left;
-    char what[PRICES_TEXT];
-    struct cost_report *report;
+    bool news;
+    struct prices_state state; /* owns its report */
     struct price_strip strip;
     struct effect_price effects[EFFECTS_MAX];
 };
@@ -30,9 +27,9 @@ static void tell(void *user, double done, double seconds_left, const char *what)
     struct prices *prices = user;
     pthread_mutex_lock(&prices->lock);
     prices->news = true;
-    prices->done = done;
-    prices->seconds_left = seconds_left;
-    snprintf(prices->what, sizeof prices->what, "%s", what);
+    prices->state.done = done;
+    prices->state.seconds_left = seconds_left;
+    snprintf(prices->state.what, sizeof prices->state.what, "%s", what);
     pthread_mutex_unlock(&prices->lock);
     window_wake(NULL);
 }
@@ -43,7 +40,7 @@ static void on_message(void *user, whit_log_level level, const char *message)
     if (level != WHIT_LOG_ERROR)
         return;
     pthread_mutex_lock(&prices->lock);
-    snprintf(prices->what, sizeof prices->what, "%s", message);
+    snprintf(prices->state.what, sizeof prices->state.what, "%s", message);
     pthread_mutex_unlock(&prices->lock);
 }
 
@@ -155,10 +152,10 @@ static void run(void *context)
     whit_accel_destroy(accel);
     platform_trim_heaps();
     pthread_mutex_lock(&prices->lock);
-    prices->report = report;
-    prices->finished = prices->news = true;
-    if (result != WHIT_OK && !report && !prices->what[0])
-        snprintf(prices->what, sizeof prices->what, "it could not be measured");
+    prices->state.report = report;
+    prices->state.finished = prices->news = true;
+    if (result != WHIT_OK && !report && !prices->state.what[0])
+        snprintf(prices->state.what, sizeof prices->state.what, "it could not be measured");
     pthread_mutex_unlock(&prices->lock);
     window_wake(NULL);
 }
@@ -172,6 +169,8 @@ struct prices *prices_start(const struct prices_params *params)
     /* Prices are those of colours, not of cost views. */
     prices->params.settings.paint = PAINT_COLOR;
     prices->params.scene = scene_ref_take(params->scene);
+    prices->state.strip = &prices->strip;
+    prices->state.settings = &prices->params.settings;
     pthread_mutex_init(&prices->lock, NULL);
     prices->thread = thread_start(run, prices);
     if (prices->thread)
@@ -191,7 +190,7 @@ void prices_stop(struct prices *prices)
         return;
     prices->cancel = true;
     thread_join(prices->thread);
-    cost_report_destroy(prices->report);
+    cost_report_destroy(prices->state.report);
     price_strip_finish(&prices->strip);
     scene_ref_drop(prices->params.scene);
     pthread_mutex_destroy(&prices->lock);
@@ -225,14 +224,6 @@ void prices_get_effect(struct prices *prices, uint32_t effect, struct effect_pri
 void prices_get_state(struct prices *prices, struct prices_state *state)
 {
     pthread_mutex_lock(&prices->lock);
-    *state = (struct prices_state){
-        .finished = prices->finished,
-        .done = prices->done,
-        .seconds_left = prices->seconds_left,
-        .report = prices->finished ? prices->report : NULL,
-        .strip = &prices->strip,
-        .settings = prices->params.settings,
-    };
-    memcpy(state->what, prices->what, sizeof state->what);
+    *state = prices->state;
     pthread_mutex_unlock(&prices->lock);
 }

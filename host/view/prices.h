@@ -36,11 +36,11 @@ void prices_cancel(struct prices *prices);
 enum { PRICES_TEXT = 160 };
 struct prices_state {
     bool finished;
-    double done, seconds_left;        /* `done`: 0..1 */
-    char what[PRICES_TEXT];           /* what is being measured; after a failure: the reason */
-    const struct cost_report *report; /* borrowed until prices_stop; NULL until finished */
-    const struct price_strip *strip;  /* as `report` */
-    struct settings settings;         /* settings of the picture whose prices these are */
+    double done, seconds_left;       /* `done`: 0..1 */
+    char what[PRICES_TEXT];          /* what is being measured; after a failure: the reason */
+    struct cost_report *report;      /* borrowed until prices_stop; NULL until finished */
+    const struct price_strip *strip; /* likewise */
+    const struct settings *settings; /* likewise: of the picture whose prices these are */
 };
 /* Whether there is something new since the last call. */
 bool prices_have_news(struct prices *prices);
