@@ -125,23 +125,24 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
    Called without engine->lock. */
 static bool note_change(struct engine *engine, const struct engine_frame *frame)
 {
-    struct engine_change change = engine->change; /* which no other thread writes */
+    struct engine_change change = engine->status.change; /* which no other thread writes */
     struct engine_kept *whole = &engine->lanes[0].whole, before = *whole;
     bool same = engine_is_same(&before, frame);
     engine_compare(&before, frame, &change);
     *whole = (struct engine_kept){0};
     engine_keep(whole, frame);
     pthread_mutex_lock(&engine->lock);
-    bool compared = change.number != engine->change.number;
-    engine->change = change;
+    bool compared = change.number != engine->status.change.number;
+    engine->status.change = change;
     if (compared) {
         engine->changing.settings[0] = before.settings;
         engine->changing.settings[1] = frame->settings;
         engine->change_left = false;
     }
-    uint64_t reloads = engine->reload.number;
+    uint64_t reloads = engine->status.reload.number;
     engine_reload_note(engine, &before, &frame->settings, compared ? &change.difference : NULL);
-    engine->change_left |= engine->reload.number != reloads; /* reload measures the time instead */
+    engine->change_left |=
+        engine->status.reload.number != reloads; /* reload measures the time instead */
     pthread_mutex_unlock(&engine->lock);
     engine_kept_finish(&before);
     return same;
@@ -237,9 +238,9 @@ void engine_show_preview(struct engine *engine, struct engine_job *job)
 /* Called with engine->lock held. Out of memory is often not logged, so a text is made up here. */
 static void say_failure(struct engine *engine, whit_result result)
 {
-    engine->result = result;
-    if (!engine->error[0])
-        snprintf(engine->error, sizeof engine->error, "%s",
+    engine->status.result = result;
+    if (!engine->status.error[0])
+        snprintf(engine->status.error, sizeof engine->status.error, "%s",
                  result == WHIT_ERROR_MEMORY ? "out of memory" : whit_result_name(result));
 }
 
@@ -302,7 +303,7 @@ static void draw_one(struct engine *engine, struct engine_lane *lane, struct eng
         if (result == WHIT_ERROR_DEVICE)
             engine_lose_device(engine, session);
         if (result != WHIT_ERROR_CANCELLED &&
-            (result != WHIT_ERROR_DEVICE || engine->device_lost)) {
+            (result != WHIT_ERROR_DEVICE || engine->status.device_lost)) {
             lane->failed = lane->asked == task->asked;
             say_failure(engine, result);
         }

@@ -68,13 +68,13 @@ static const double SOON_MS = 2e3;
 
 bool engine_change_waits(const struct engine *engine)
 {
-    const struct engine_change *change = &engine->change;
+    const struct engine_change *change = &engine->status.change;
     return engine->params.times && change->number > 0 && !change->over && !engine->change_left;
 }
 
 bool engine_change_step(struct engine *engine, bool late)
 {
-    struct engine_change *change = &engine->change;
+    struct engine_change *change = &engine->status.change;
     bool same = change->difference.other_colors == 0 && change->difference.other_ids == 0;
     bool soon = (change->before_ms + change->after_ms) * ENGINE_PAIRS_MIN <= SOON_MS;
     if (!engine_change_waits(engine) || !(late || same || soon) || !engine_is_idle(engine))

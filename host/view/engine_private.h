@@ -55,8 +55,8 @@ struct engine_lane {
 
 struct engine {
     struct engine_params params;
-    bool refining; /* samples are being added to a picture now */
-    struct engine_reload reload;
+    bool refining;               /* samples are being added to a picture now */
+    struct engine_status status; /* but for what engine_get_status adds */
     struct engine_reloading reloading;
     struct engine_flip *flip;     /* NULL: no thread is running */
     struct engine_turns changing; /* measures `change` */
@@ -94,12 +94,6 @@ struct engine {
     bool littered;       /* a session was made or dropped: the heaps have free memory */
     uint64_t uses;
     uint32_t lost; /* devices lost without a picture in between */
-    char error[ENGINE_MESSAGE];
-    char errors[SESSION_ERRORS];
-    char refused[SETTING_PATH_BYTES]; /* session.refused of the last job that loaded a scene */
-    whit_result result;               /* result of the last failure */
-    bool device_lost;
-    struct engine_change change;
     bool probe_wanted;
     uint32_t probe_x, probe_y;
     uint64_t probes;

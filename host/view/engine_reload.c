@@ -37,7 +37,7 @@ static void start_flip(struct engine *engine)
     struct engine_flip *flip = calloc(1, sizeof *flip);
     if (flip) {
         *flip = (struct engine_flip){.engine = engine,
-                                     .number = engine->reload.number,
+                                     .number = engine->status.reload.number,
                                      .before = whit_image_share(engine->reloading.before.color),
                                      .after = whit_image_share(engine->lanes[0].whole.color)};
         flip->thread = flip->after ? thread_start(run_flip, flip) : NULL;
@@ -54,9 +54,9 @@ static void reap_flip(struct engine *engine)
     struct engine_flip *flip = engine->flip;
     if (!flip || !flip->done)
         return;
-    if (flip->number == engine->reload.number) {
-        engine->reload.has_flip = flip->known;
-        engine->reload.flip = flip->mean;
+    if (flip->number == engine->status.reload.number) {
+        engine->status.reload.has_flip = flip->known;
+        engine->status.reload.flip = flip->mean;
     }
     engine->flip = NULL;
     engine_flip_destroy(flip);
@@ -67,8 +67,8 @@ static void reap_flip(struct engine *engine)
 
 static void end_reload(struct engine *engine, const char *why)
 {
-    engine->reload.over = true;
-    engine->reload.why = why;
+    engine->status.reload.over = true;
+    engine->status.reload.why = why;
     engine_kept_finish(&engine->reloading.before);
     engine_wake(engine);
 }
@@ -79,7 +79,7 @@ bool engine_reload_step(struct engine *engine)
 {
     struct engine_reloading *reloading = &engine->reloading;
     reap_flip(engine);
-    if (!reloading->wanted || engine->reload.over || !engine_is_idle(engine))
+    if (!reloading->wanted || engine->status.reload.over || !engine_is_idle(engine))
         return false;
     if (engine->flip)
         return false; /* the FLIP thread wakes this one when it is done */
@@ -87,7 +87,7 @@ bool engine_reload_step(struct engine *engine)
         start_flip(engine);
         return true;
     }
-    end_reload(engine, engine_turns_measure(engine, &reloading->turns, &engine->reload.ms));
+    end_reload(engine, engine_turns_measure(engine, &reloading->turns, &engine->status.reload.ms));
     return true;
 }
 
@@ -104,20 +104,20 @@ void engine_reload_note(struct engine *engine, struct engine_kept *before,
     reloading->turns.settings[0] = same;
     reloading->turns.settings[1] = *after;
     reloading->wanted = reloading->turns.stopped = false;
-    engine->reload =
-        (struct engine_reload){.number = engine->reload.number + 1, .settings = *after, .why = ""};
+    engine->status.reload = (struct engine_reload){
+        .number = engine->status.reload.number + 1, .settings = *after, .why = ""};
     if (!difference || !settings_same(&same, &before->settings))
         return;
-    engine->reload.compared = true;
-    engine->reload.has_colors = before->color && after->paint == PAINT_COLOR;
-    engine->reload.difference = *difference;
+    engine->status.reload.compared = true;
+    engine->status.reload.has_colors = before->color && after->paint == PAINT_COLOR;
+    engine->status.reload.difference = *difference;
     reloading->before = *before;
     *before = (struct engine_kept){.settings = before->settings};
 }
 
 void engine_reload_stop(struct engine *engine)
 {
-    if (engine->reload.number == 0 || engine->reload.over)
+    if (engine->status.reload.number == 0 || engine->status.reload.over)
         return;
     engine->reloading.turns.stopped = true;
     if (engine->timing == &engine->reloading.turns)
@@ -129,7 +129,7 @@ void engine_reload_stop(struct engine *engine)
 void engine_measure_reload(struct engine *engine)
 {
     pthread_mutex_lock(&engine->lock);
-    engine->reloading.wanted = engine->reload.number > 0;
+    engine->reloading.wanted = engine->status.reload.number > 0;
     pthread_cond_signal(&engine->work);
     pthread_mutex_unlock(&engine->lock);
 }

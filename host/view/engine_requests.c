@@ -113,26 +113,18 @@ void engine_get_status(struct engine *engine, struct engine_status *status)
 {
     pthread_mutex_lock(&engine->lock);
     const struct engine_job *job = engine->job;
-    *status = (struct engine_status){
-        .stage = job && !job->is_spare ? (enum session_stage)atomic_load(&job->session->stage)
-                                       : SESSION_DONE,
-        .stage_ms = job ? whit_clock_ms() - job->start_ms : 0.0,
-        .makes_spare = job && job->is_spare,
-        .drawing = !engine_is_done(&engine->lanes[0]) || !engine_is_done(&engine->lanes[1]),
-        .failed = engine->lanes[0].failed,
-        .result = engine->result,
-        .device_lost = engine->device_lost,
-        .change = engine->change,
-        .reload = engine->reload,
-    };
+    *status = engine->status;
+    status->stage = job && !job->is_spare ? (enum session_stage)atomic_load(&job->session->stage)
+                                          : SESSION_DONE;
+    status->stage_ms = job ? whit_clock_ms() - job->start_ms : 0.0;
+    status->makes_spare = job && job->is_spare;
+    status->drawing = !engine_is_done(&engine->lanes[0]) || !engine_is_done(&engine->lanes[1]);
+    status->failed = engine->lanes[0].failed;
     if (engine->drawing && !engine->refining &&
         !engine->timing) { /* nobody waits for refining and timing */
         status->drawing_ms = whit_clock_ms() - engine->drawing_since_ms;
         status->part = atomic_load(&engine->drawing->part);
     }
-    memcpy(status->error, engine->error, sizeof status->error);
-    snprintf(status->errors, sizeof status->errors, "%s", engine->errors);
-    memcpy(status->refused, engine->refused, sizeof status->refused);
     pthread_mutex_unlock(&engine->lock);
 }
 

@@ -33,7 +33,7 @@ static void session_message(void *user, whit_log_level level, const char *messag
         return;
     }
     pthread_mutex_lock(&engine->lock);
-    keep_error(session->ready ? engine->error : session->error, level, message);
+    keep_error(session->ready ? engine->status.error : session->error, level, message);
     pthread_mutex_unlock(&engine->lock);
 }
 
@@ -43,7 +43,7 @@ static void scene_message(void *user, whit_log_level level, const char *message)
 {
     struct engine *engine = user;
     pthread_mutex_lock(&engine->lock);
-    keep_error(engine->job ? engine->job->session->error : engine->error, level, message);
+    keep_error(engine->job ? engine->job->session->error : engine->status.error, level, message);
     pthread_mutex_unlock(&engine->lock);
 }
 
@@ -220,8 +220,8 @@ bool engine_start_job(struct engine *engine, const struct settings *settings, bo
         version->ready = true;
     else
         free(session);
-    snprintf(engine->error, sizeof engine->error, "out of memory");
-    engine->result = WHIT_ERROR_MEMORY;
+    snprintf(engine->status.error, sizeof engine->status.error, "out of memory");
+    engine->status.result = WHIT_ERROR_MEMORY;
     return false;
 }
 
@@ -288,7 +288,7 @@ void engine_forget_error(struct engine *engine)
         if (engine->lanes[i].wanted && engine->lanes[i].failed)
             return;
     }
-    engine->error[0] = engine->errors[0] = '\0';
+    engine->status.error[0] = engine->status.errors[0] = '\0';
 }
 
 void engine_reap_job(struct engine *engine)
@@ -298,15 +298,15 @@ void engine_reap_job(struct engine *engine)
         return;
     engine->job = NULL;
     if (!job->scene)
-        memcpy(engine->refused, job->session->refused, sizeof engine->refused);
+        memcpy(engine->status.refused, job->session->refused, sizeof engine->status.refused);
     if (job->result == WHIT_OK) {
         engine_forget_error(engine);
     } else if (job->result != WHIT_ERROR_CANCELLED && !job->is_spare) {
-        memcpy(engine->error, job->session->error, sizeof engine->error);
-        memcpy(engine->errors, job->session->errors, sizeof engine->errors);
-        engine->result = job->result;
-        if (!engine->error[0])
-            snprintf(engine->error, sizeof engine->error, "out of memory");
+        memcpy(engine->status.error, job->session->error, sizeof engine->status.error);
+        memcpy(engine->status.errors, job->session->errors, sizeof engine->status.errors);
+        engine->status.result = job->result;
+        if (!engine->status.error[0])
+            snprintf(engine->status.error, sizeof engine->status.error, "out of memory");
         for (int i = 0; i < ENGINE_LANES; ++i) {
             struct engine_lane *lane = &engine->lanes[i];
             if (lane->wanted && settings_same_kernel(&lane->settings, &job->settings))
@@ -329,6 +329,6 @@ void engine_reap_job(struct engine *engine)
 
 void engine_lose_device(struct engine *engine, struct session *session)
 {
-    engine->device_lost = ++engine->lost > LOST_MAX;
+    engine->status.device_lost = ++engine->lost > LOST_MAX;
     forget_session(engine, session);
 }
