@@ -126,10 +126,10 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
 static bool note_change(struct engine *engine, const struct engine_frame *frame)
 {
     struct engine_change change = engine->status.change; /* which no other thread writes */
-    struct engine_kept *whole = &engine->lanes[0].whole, before = *whole;
+    struct engine_frame *whole = &engine->lanes[0].whole, before = *whole;
     bool same = engine_is_same(&before, frame);
     engine_compare(&before, frame, &change);
-    *whole = (struct engine_kept){0};
+    *whole = (struct engine_frame){0};
     engine_keep(whole, frame);
     pthread_mutex_lock(&engine->lock);
     bool compared = change.number != engine->status.change.number;
@@ -144,7 +144,7 @@ static bool note_change(struct engine *engine, const struct engine_frame *frame)
     engine->change_left |=
         engine->status.reload.number != reloads; /* reload measures the time instead */
     pthread_mutex_unlock(&engine->lock);
-    engine_kept_finish(&before);
+    engine_frame_finish(&before);
     return same;
 }
 
@@ -475,10 +475,10 @@ uint32_t engine_destroy(struct engine *engine)
         struct engine_lane *lane = &engine->lanes[i];
         engine_frame_finish(&lane->frame);
         engine_refine_stop(&lane->refine);
-        engine_kept_finish(&lane->whole);
-        engine_kept_finish(&lane->single);
+        engine_frame_finish(&lane->whole);
+        engine_frame_finish(&lane->single);
     }
-    engine_kept_finish(&engine->reloading.before);
+    engine_frame_finish(&engine->reloading.before);
     engine_flip_destroy(engine->flip);
     for (int i = 0; i < 2; ++i)
         shader_ref_drop(engine->versions[i]);

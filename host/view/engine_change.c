@@ -35,7 +35,7 @@ double engine_drawn_ms(const whit_stats *stats)
     return stats->render_device_ms >= 0.0 ? stats->render_device_ms : stats->render_ms;
 }
 
-void engine_compare(const struct engine_kept *before, const struct engine_frame *after,
+void engine_compare(const struct engine_frame *before, const struct engine_frame *after,
                     struct engine_change *change)
 {
     char what[sizeof change->what];
@@ -97,7 +97,7 @@ void engine_change_stop(struct engine *engine)
         engine->drawing->cancel = true;
 }
 
-bool engine_is_same(const struct engine_kept *before, const struct engine_frame *after)
+bool engine_is_same(const struct engine_frame *before, const struct engine_frame *after)
 {
     size_t pixels = (size_t)after->width * after->height;
     return before->ids && before->color && after->ids && after->settings.paint == PAINT_COLOR &&
@@ -109,25 +109,16 @@ bool engine_is_same(const struct engine_kept *before, const struct engine_frame 
                   pixels * 4 * sizeof(float)) == 0;
 }
 
-void engine_keep(struct engine_kept *kept, const struct engine_frame *frame)
+void engine_keep(struct engine_frame *kept, const struct engine_frame *frame)
 {
     bool colors = frame->settings.paint == PAINT_COLOR;
-    engine_kept_finish(kept);
-    *kept = (struct engine_kept){.settings = frame->settings,
-                                 .stats = frame->stats,
-                                 .width = frame->width,
-                                 .height = frame->height,
-                                 .color = colors ? whit_image_share(frame->color) : NULL,
-                                 .plain = whit_image_share(frame->plain),
-                                 .cuts = whit_image_share(frame->cuts),
-                                 .ids = whit_image_share(frame->ids)};
-}
-
-void engine_kept_finish(struct engine_kept *kept)
-{
-    whit_image_destroy(kept->ids);
-    whit_image_destroy(kept->color);
-    whit_image_destroy(kept->plain);
-    whit_image_destroy(kept->cuts);
-    kept->ids = kept->color = kept->plain = kept->cuts = NULL;
+    engine_frame_finish(kept);
+    *kept = (struct engine_frame){.settings = frame->settings,
+                                  .stats = frame->stats,
+                                  .width = frame->width,
+                                  .height = frame->height,
+                                  .color = colors ? whit_image_share(frame->color) : NULL,
+                                  .plain = whit_image_share(frame->plain),
+                                  .cuts = whit_image_share(frame->cuts),
+                                  .ids = whit_image_share(frame->ids)};
 }

@@ -13,8 +13,8 @@ struct engine_task {
     uint32_t step_spacing; /* spacing of the first step; 0: no steps */
     bool moving, brief;    /* brief: the first picture of a request */
     bool finishes; /* the picture, or its first step, fits the budget: it is not cancelled */
-    struct engine_refine *refine;     /* has some of its samples, and adds the others; NULL: none */
-    const struct engine_kept *single; /* the picture of one sample that `refine` began with */
+    struct engine_refine *refine; /* has some of its samples, and adds the others; NULL: none */
+    const struct engine_frame *single; /* the picture of one sample that `refine` began with */
     double asked_ms;
     struct engine *engine; /* the engine that shows the steps, in `lane` */
     struct engine_lane *lane;

@@ -48,9 +48,9 @@ struct engine_lane {
     struct pace pace; /* of its session */
     /* For the drawing thread: */
     struct engine_refine refine;
-    struct engine_kept whole;  /* the last whole picture */
-    struct engine_kept single; /* the picture of one sample that `refine` goes on with; without ids:
-                                  none */
+    struct engine_frame whole;  /* the last whole picture */
+    struct engine_frame single; /* the picture of one sample that `refine` goes on with; without
+                                  ids: none */
 };
 
 struct engine {

@@ -62,7 +62,7 @@ static void begin(struct engine_refine *refine, const struct engine_frame *frame
 
 /* Creates the whit_refine, whose first part is the picture that engine_keep kept. */
 static whit_result begin_parts(struct engine_refine *refine, whit_renderer *renderer,
-                               const whit_renderer_params *params, const struct engine_kept *kept)
+                               const whit_renderer_params *params, const struct engine_frame *kept)
 {
     whit_image *image = NULL;
     if (refine->refine)
@@ -106,7 +106,7 @@ static void note_estimate(struct engine_refine *refine, const whit_refine_info *
 
 /* Draws the next part, and then sets the renderer back to the picture of the settings. */
 static whit_result draw_part(struct session *session, struct engine_refine *refine,
-                             const struct engine_kept *kept, whit_refine_info *info)
+                             const struct engine_frame *kept, whit_refine_info *info)
 {
     session->settings = refine->base.settings; /* the renderer borrows the camera's name */
     const whit_renderer_params usual = session_picture(session);
@@ -132,7 +132,7 @@ static bool looks_same(const uint8_t *a, const uint8_t *b, size_t pixels)
 }
 
 /* Reads the mean of all samples, with edges and grid as the settings say. */
-static whit_result read_sum(const struct engine_refine *refine, const struct engine_kept *kept,
+static whit_result read_sum(const struct engine_refine *refine, const struct engine_frame *kept,
                             struct session *session, whit_image **color)
 {
     const whit_renderer_params params = settings_picture(&refine->base.settings);
@@ -162,7 +162,7 @@ static void sum_stats(const struct engine_refine *refine, whit_stats *stats)
 
 /* Puts the mean of all samples into *frame, also as displayed. `kept`: the picture that refining
    began with; the session's renderer is set to its view. */
-static whit_result show_sum(const struct engine_refine *refine, const struct engine_kept *kept,
+static whit_result show_sum(const struct engine_refine *refine, const struct engine_frame *kept,
                             struct session *session, struct engine_frame *frame)
 {
     whit_refine_info info;
@@ -190,7 +190,7 @@ static whit_result show_sum(const struct engine_refine *refine, const struct eng
 
 /* Makes *frame the picture of four times as many samples. */
 static whit_result finish_round(struct session *session, struct engine_refine *refine,
-                                const struct engine_kept *kept, struct engine_frame *frame)
+                                const struct engine_frame *kept, struct engine_frame *frame)
 {
     size_t bytes = bytes_of(refine);
     *frame = refine->base;
@@ -209,7 +209,7 @@ static whit_result finish_round(struct session *session, struct engine_refine *r
 /* Keeps the samples that were added: a new whole picture has the same pixels as the one that
    refining began with. *frame then shows as many samples as the picture before. False: they
    cannot be kept. */
-static bool keep(struct engine_refine *refine, const struct engine_kept *kept,
+static bool keep(struct engine_refine *refine, const struct engine_frame *kept,
                  struct session *session, struct engine_frame *frame)
 {
     const whit_sampling *sampling = &frame->settings.picture.sampling;
@@ -227,7 +227,7 @@ static bool keep(struct engine_refine *refine, const struct engine_kept *kept,
    without hit identities; otherwise it is zeroed. `kept`: the picture that refining began with.
    Called without engine->lock. */
 static whit_result draw_next(struct session *session, struct engine_refine *refine,
-                             const struct engine_kept *kept, struct engine_frame *frame)
+                             const struct engine_frame *kept, struct engine_frame *frame)
 {
     whit_refine_info info = {0};
     whit_result result = WHIT_OK;
@@ -275,7 +275,7 @@ static whit_result draw_missing(const struct engine_task *task)
 
 whit_result engine_refine_whole(const struct engine_task *task, struct engine_frame *frame)
 {
-    const struct engine_kept *single = task->single;
+    const struct engine_frame *single = task->single;
     whit_result result = draw_missing(task);
     if (result == WHIT_OK)
         result = show_sum(task->refine, single, task->session, frame);
@@ -322,13 +322,13 @@ void engine_refine_take(struct engine *engine, const struct engine_task *task, b
     else if (!(same && !engine->lanes[1].wanted &&
                keep(refine, &lane->whole, task->session, frame)))
         begin(refine, frame);
-    engine_kept_finish(&lane->single);
+    engine_frame_finish(&lane->single);
 }
 
 void engine_refine_join(struct engine_task *task)
 {
     struct engine_refine *refine = &task->lane->refine;
-    const struct engine_kept *single = &task->lane->single;
+    const struct engine_frame *single = &task->lane->single;
     if (!engine_doubles(&task->settings) || has_post(task->session) || !single->ids ||
         refine->samples == 0 || refine->samples >= task->settings.picture.sampling.count ||
         !settings_same(&refine->base.settings, &task->settings))

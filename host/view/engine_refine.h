@@ -4,7 +4,6 @@
 
 #include "view/engine.h"
 
-struct engine_kept;
 struct engine_lane;
 struct engine_task;
 

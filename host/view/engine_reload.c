@@ -42,7 +42,7 @@ static void start_flip(struct engine *engine)
                                      .after = whit_image_share(engine->lanes[0].whole.color)};
         flip->thread = flip->after ? thread_start(run_flip, flip) : NULL;
     }
-    engine_kept_finish(&engine->reloading.before);
+    engine_frame_finish(&engine->reloading.before);
     if (flip && flip->thread)
         engine->flip = flip;
     else
@@ -69,7 +69,7 @@ static void end_reload(struct engine *engine, const char *why)
 {
     engine->status.reload.over = true;
     engine->status.reload.why = why;
-    engine_kept_finish(&engine->reloading.before);
+    engine_frame_finish(&engine->reloading.before);
     engine_wake(engine);
 }
 
@@ -91,7 +91,7 @@ bool engine_reload_step(struct engine *engine)
     return true;
 }
 
-void engine_reload_note(struct engine *engine, struct engine_kept *before,
+void engine_reload_note(struct engine *engine, struct engine_frame *before,
                         const struct settings *after, const struct difference *difference)
 {
     struct engine_reloading *reloading = &engine->reloading;
@@ -100,7 +100,7 @@ void engine_reload_note(struct engine *engine, struct engine_kept *before,
     if (!before->ids || after->shader_reload <= before->settings.shader_reload ||
         !settings_same_shader(&same, &before->settings))
         return;
-    engine_kept_finish(&reloading->before);
+    engine_frame_finish(&reloading->before);
     reloading->turns.settings[0] = same;
     reloading->turns.settings[1] = *after;
     reloading->wanted = reloading->turns.stopped = false;
@@ -112,7 +112,7 @@ void engine_reload_note(struct engine *engine, struct engine_kept *before,
     engine->status.reload.has_colors = before->color && after->paint == PAINT_COLOR;
     engine->status.reload.difference = *difference;
     reloading->before = *before;
-    *before = (struct engine_kept){.settings = before->settings};
+    *before = (struct engine_frame){.settings = before->settings};
 }
 
 void engine_reload_stop(struct engine *engine)

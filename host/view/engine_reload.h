@@ -21,14 +21,15 @@ struct engine_flip {
 
 /* State of measuring a reload; used by the drawing thread. */
 struct engine_reloading {
-    struct engine_kept before; /* the picture before, if FLIP is still missing; without ids: none */
+    struct engine_frame
+        before;                /* the picture before, if FLIP is still missing; without ids: none */
     struct engine_turns turns; /* draws the version before, and the new one */
     bool wanted;               /* set by engine_measure_reload */
 };
 
 /* Call it after each whole picture. `after`: its settings; *before: the whole picture before, which
    may be taken; `difference` between both, NULL if camera, time or size differ. */
-void engine_reload_note(struct engine *engine, struct engine_kept *before,
+void engine_reload_note(struct engine *engine, struct engine_frame *before,
                         const struct settings *after, const struct difference *difference);
 /* Measures a reload if there is something to measure and nothing else to do; releases the lock
    meanwhile. False: nothing was done. */
