@@ -29,15 +29,45 @@ static inline int fixture_end(void **state)
     return folder_end(state);
 }
 
+/* Writes a file of JSON, in whose text ' stands for "; gives its path. */
+__attribute__((format(printf, 2, 3))) static inline const char *put_json(const char *name,
+                                                                         const char *format, ...)
+{
+    char *text = NULL;
+    size_t bytes;
+    FILE *stream = open_memstream(&text, &bytes);
+    assert_non_null(stream);
+    va_list values;
+    va_start(values, format);
+    assert_true(vfprintf(stream, format, values) >= 0);
+    va_end(values);
+    assert_int_equal(fclose(stream), 0);
+    for (char *at = text; (at = strchr(at, '\''));)
+        *at = '"';
+    const char *path = put_text(name, text);
+    free(text);
+    return path;
+}
+
 static inline whit_result fixture_load(const char *path)
 {
     return load_model(fixture.scene, path, SCENE_NONE, true, true, NULL);
 }
 
+/* Loads a file, which adds one mesh or more; gives the last one. */
+static inline const struct scene_mesh *fixture_mesh(const char *path)
+{
+    if (fixture_load(path) != WHIT_OK)
+        fail_msg("%s", messages.last_error);
+    return &fixture.scene->meshes[fixture.scene->mesh_count - 1];
+}
+
 /* Checks that loading fails with one error, which names the file and contains `reason`. */
 static inline void fixture_refused(const char *path, const char *reason)
 {
-    assert_int_equal(fixture_load(path), WHIT_ERROR_INPUT);
+    messages.errors = 0;
+    if (fixture_load(path) != WHIT_ERROR_INPUT)
+        fail_msg("no error with `%s`", reason);
     assert_int_equal(messages.errors, 1);
     assert_non_null(strstr(messages.last_error, path));
     if (!strstr(messages.last_error, reason))
