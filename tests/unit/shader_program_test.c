@@ -5,16 +5,36 @@
 #include "shader/sliders.h"
 #include "unit.h"
 
+/* What was read last; the next reading frees it. */
+static whit_shader shader;
 static struct shader_errors errors;
 
-static whit_result read_text(const char *text, whit_shader *shader)
+static whit_result read_text(const char *content, struct shader_text *text)
 {
-    const struct shader_text_source source = {"a.glsl", text, strlen(text)};
-    *shader = (whit_shader){.fuel = SHADER_FUEL_USUAL};
+    const struct shader_text_source source = {"a.glsl", content, strlen(content)};
+    shader_text_free(text);
     errors = (struct shader_errors){0};
-    whit_result result = shader_text_from(NULL, &source, 1, &shader->text, &errors);
-    return result == WHIT_OK ? shader_annotations_read(NULL, shader, &errors) : result;
+    return shader_text_from(NULL, &source, 1, text, &errors);
 }
+
+static whit_result read_shader(const char *content)
+{
+    struct shader_text last = shader.text;
+    shader = (whit_shader){.text = last, .fuel = SHADER_FUEL_USUAL};
+    whit_result result = read_text(content, &shader.text);
+    return result == WHIT_OK ? shader_annotations_read(NULL, &shader, &errors) : result;
+}
+
+/* Asserts that the file has one error, in this line and for this reason. */
+static void refuse_shader(const char *content, uint32_t line, const char *reason)
+{
+    assert_int_equal(read_shader(content), WHIT_ERROR_INPUT);
+    assert_int_equal(errors.count, 1);
+    if (errors.items[0].line != line || !strstr(errors.items[0].reason, reason))
+        fail_msg("%s: line %u: %s", content, errors.items[0].line, errors.items[0].reason);
+}
+
+#define MISS "vec3 miss(vec3 dir) { return dir; }\n"
 
 /* A byte order mark, an end of a line that is a CR alone, and lines in comments. */
 static const char whole[] = "\xef\xbb\xbf//@ slider bands 1 8 3 \"steps of light\"\r"
@@ -24,13 +44,11 @@ static const char whole[] = "\xef\xbb\xbf//@ slider bands 1 8 3 \"steps of light
                             "//@ toggle on on\n"
                             "//@ toggle off \"begins without\"\n"
                             "//@ choice mode plain,warm,cold \"which\"\n"
-                            "//@ fuel 1234\n"
-                            "vec3 miss(vec3 dir) { return dir; }\n";
+                            "//@ fuel 1234\n" MISS;
 
 TEST(lines_are_read)
 {
-    whit_shader shader;
-    assert_int_equal(read_text(whole, &shader), WHIT_OK);
+    assert_int_equal(read_shader(whole), WHIT_OK);
     assert_int_equal(shader.fuel, 1234);
     assert_int_equal(shader.slider_count, 5);
     assert_int_equal(shader.value_count, 7);
@@ -46,18 +64,16 @@ TEST(lines_are_read)
     assert_int_equal(s[4].word_count, 3);
     assert_string_equal(s[4].words[2], "cold");
     assert_int_equal(s[4].first, 6);
-    shader_text_free(&shader.text);
 }
 
 /* Reading ends at the first error that is not kept, so that a text of many takes no time. */
 TEST(errors_are_limited_in_number)
 {
-    whit_shader shader;
     char text[64 * 16] = "";
     for (int i = 0; i < 64; ++i)
         strcat(text, "//@ fuel 0\n");
-    strcat(text, "vec3 miss(vec3 dir) { return dir; }\n");
-    assert_int_equal(read_text(text, &shader), WHIT_ERROR_INPUT);
+    strcat(text, MISS);
+    assert_int_equal(read_shader(text), WHIT_ERROR_INPUT);
     assert_int_equal(errors.count, SHADER_ERROR_MAX);
     assert_int_equal(errors.more, 1);
     errors = (struct shader_errors){0};
@@ -65,22 +81,17 @@ TEST(errors_are_limited_in_number)
     assert_int_equal(shader_annotations_read(&counted, &shader, &errors), WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, SHADER_ERROR_MAX + 1);
     assert_string_equal(messages.last_error, "a.glsl: there are more errors");
-    shader_text_free(&shader.text);
 }
 
 TEST(the_most_fuel_is_taken)
 {
-    whit_shader shader;
-    assert_int_equal(read_text("//@ fuel 30000\nvec3 miss(vec3 dir) { return dir; }\n", &shader),
-                     WHIT_OK);
+    assert_int_equal(read_shader("//@ fuel 30000\n" MISS), WHIT_OK);
     assert_int_equal(shader.fuel, 30000);
-    shader_text_free(&shader.text);
 }
 
 TEST(sliders_are_declared_by_plain_names)
 {
-    whit_shader shader;
-    assert_int_equal(read_text(whole, &shader), WHIT_OK);
+    assert_int_equal(read_shader(whole), WHIT_OK);
     own_memory char *text = shader_sliders_declare(&shader);
     assert_string_equal(text, "float bands = slider(0u);\n"
                               "vec3 rim = vec3(slider(1u), slider(2u), slider(3u));\n"
@@ -90,15 +101,13 @@ TEST(sliders_are_declared_by_plain_names)
                               "const int mode_plain = 0;\n"
                               "const int mode_warm = 1;\n"
                               "const int mode_cold = 2;\n");
-    shader_text_free(&shader.text);
 }
 
 TEST(values_come_from_the_file_and_from_text)
 {
-    whit_shader shader;
     float values[SHADER_SLIDERS_MAX];
     char why[256];
-    assert_int_equal(read_text(whole, &shader), WHIT_OK);
+    assert_int_equal(read_shader(whole), WHIT_OK);
     assert_true(shader_sliders_read(&shader, NULL, false, values, why, sizeof why));
     assert_true(values[0] == 3.0f && values[1] == 1.0f && values[3] == 0.0f && values[4] == 1.0f);
     assert_true(values[2] == (float)linear_from_srgb((double)(128.0f / 255.0f)));
@@ -106,7 +115,6 @@ TEST(values_come_from_the_file_and_from_text)
                                     values, why, sizeof why));
     assert_true(values[0] == 4.5f && values[1] == 0.0f && values[2] == 1.0f && values[4] == 0.0f);
     assert_true(values[6] == 2.0f);
-    shader_text_free(&shader.text);
 }
 
 TEST(values_that_are_none_are_refused_or_skipped)
@@ -122,10 +130,9 @@ TEST(values_that_are_none_are_refused_or_skipped)
                  {"band=3", "did you mean `bands`"},
                  {"bands", "NAME=VALUE"},
                  {"=3", "NAME=VALUE"}};
-    whit_shader shader;
     float values[SHADER_SLIDERS_MAX], usual[SHADER_SLIDERS_MAX];
     char why[256];
-    assert_int_equal(read_text(whole, &shader), WHIT_OK);
+    assert_int_equal(read_shader(whole), WHIT_OK);
     assert_true(shader_sliders_read(&shader, "", false, usual, why, sizeof why));
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         why[0] = 0;
@@ -135,39 +142,32 @@ TEST(values_that_are_none_are_refused_or_skipped)
         assert_true(shader_sliders_read(&shader, cases[i].text, true, values, why, sizeof why));
         assert_memory_equal(values, usual, sizeof values);
     }
-    shader_text_free(&shader.text);
 }
 
 TEST(values_of_another_version_are_dropped)
 {
-    whit_shader shader;
     char text[] = "gone=1,bands=4.5,mode=hot,on=off,rim=red,bands=9", none[] = "on=off";
-    assert_int_equal(read_text(whole, &shader), WHIT_OK);
+    assert_int_equal(read_shader(whole), WHIT_OK);
     assert_true(shader_sliders_keep(&shader, text));
     assert_string_equal(text, "bands=4.5,on=off");
     assert_false(shader_sliders_keep(&shader, text));
     assert_false(shader_sliders_keep(&shader, none));
-    shader_text_free(&shader.text);
 }
 
 /* What `#if 0` leaves out is nothing for whit either. Names that are nearly types are no words of
  * GLSL. */
 TEST(code_that_is_left_out_counts_for_nothing)
 {
-    whit_shader shader;
-    assert_int_equal(read_text("#if 0\n//@ slider a 0 1 0\n#include \"nowhere.glsl\"\n#if 1\n"
-                               "//@ toggle b\n#endif\nvec3 post(int at) { return at; }\n#else\n"
-                               "//@ toggle images2D\n//@ toggle texture1\n//@ toggle "
-                               "vec2x\n#endif\n#if 1\n//@ toggle c\n#endif\n"
-                               "vec3 miss(vec3 dir) { return dir; }\n",
-                               &shader),
+    assert_int_equal(read_shader("#if 0\n//@ slider a 0 1 0\n#include \"nowhere.glsl\"\n#if 1\n"
+                                 "//@ toggle b\n#endif\nvec3 post(int at) { return at; }\n#else\n"
+                                 "//@ toggle images2D\n//@ toggle texture1\n//@ toggle "
+                                 "vec2x\n#endif\n#if 1\n//@ toggle c\n#endif\n" MISS),
                      WHIT_OK);
     assert_int_equal(shader.slider_count, 4);
     assert_string_equal(shader.sliders[0].name, "images2D");
     assert_int_equal(shader.slider_texts[0].line, 9);
     assert_string_equal(shader.sliders[3].name, "c");
     assert_false(shader_text_defines(&shader.text, "post", NULL, NULL));
-    shader_text_free(&shader.text);
 }
 
 TEST(lines_that_are_none_are_refused_with_their_line)
@@ -215,15 +215,8 @@ TEST(lines_that_are_none_are_refused_with_their_line)
                  {"", "none of whit"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         char text[256];
-        whit_shader shader;
-        snprintf(text, sizeof text, "\n//@ %s\nvec3 miss(vec3 dir) { return dir; }\n",
-                 cases[i].line);
-        assert_int_equal(read_text(text, &shader), WHIT_ERROR_INPUT);
-        assert_int_equal(errors.count, 1);
-        assert_int_equal(errors.items[0].line, 2);
-        if (!strstr(errors.items[0].reason, cases[i].why))
-            fail_msg("%s: %s", cases[i].line, errors.items[0].reason);
-        shader_text_free(&shader.text);
+        snprintf(text, sizeof text, "\n//@ %s\n" MISS, cases[i].line);
+        refuse_shader(text, 2, cases[i].why);
     }
 }
 
@@ -233,41 +226,31 @@ TEST(what_is_there_already_is_refused)
         {"fuel 10\n//@ fuel 20", "a fuel already, in line 1"},
         {"choice mode a,b\n//@ slider mode_a 0 1 0", "`mode_a` already, in line 1"},
         {"slider mode_b 0 1 0\n//@ choice mode a,b", "`mode_b` already, in line 1"},
-        {"choice a b_c,d\n//@ choice a_b c", "`a_b_c` already, in line 1"},
-        {"choice a b,c\n//@ choice d b,c", ""}};
+        {"choice a b_c,d\n//@ choice a_b c", "`a_b_c` already, in line 1"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         char text[256];
-        whit_shader shader;
-        bool refused = cases[i][1][0];
-        snprintf(text, sizeof text, "//@ %s\nvec3 miss(vec3 dir) { return dir; }\n", cases[i][0]);
-        assert_int_equal(read_text(text, &shader), refused ? WHIT_ERROR_INPUT : WHIT_OK);
-        assert_int_equal(refused ? errors.items[0].line : 2, 2);
-        assert_non_null(strstr(errors.items[0].reason, cases[i][1]));
-        shader_text_free(&shader.text);
+        snprintf(text, sizeof text, "//@ %s\n" MISS, cases[i][0]);
+        refuse_shader(text, 2, cases[i][1]);
     }
+    assert_int_equal(read_shader("//@ choice a b,c\n//@ choice d b,c\n" MISS), WHIT_OK);
 }
 
 TEST(a_side_of_the_box_may_have_no_length)
 {
-    whit_shader shader;
-    assert_int_equal(read_text("//@ box 0.15 0 0  0.15 1 1  0.01\nvoid f() {}\n", &shader),
-                     WHIT_OK);
+    assert_int_equal(read_shader("//@ box 0.15 0 0  0.15 1 1  0.01\nvoid f() {}\n"), WHIT_OK);
     assert_true(shader.box.lo[0] == 0.15f && shader.box.hi[0] == 0.15f);
-    shader_text_free(&shader.text);
 }
 
 TEST(aovs_stand_before_their_functions)
 {
-    whit_shader shader;
     char text[2048] = "//@ slider x 0 1 0\n";
     for (int i = 0; i < SHADER_AOVS_MAX; ++i)
         snprintf(text + strlen(text), sizeof text - strlen(text),
                  "//@ aov a%d\n// what it is\nvec4 a%d(in Surface s) { return vec4(x); }\n", i, i);
     size_t full = strlen(text);
-    assert_int_equal(read_text(text, &shader), WHIT_OK);
+    assert_int_equal(read_shader(text), WHIT_OK);
     assert_int_equal(shader.aov_count, SHADER_AOVS_MAX);
     assert_string_equal(shader.aov_names[15], "a15");
-    shader_text_free(&shader.text);
     static const char *const more[][2] = {
         {"//@ aov b\nvec4 b(Surface s) { return vec4(0); }\n", "at most 16 aovs"},
         {"//@ aov a3\n", "an aov `a3` already, in line 11"},
@@ -275,51 +258,40 @@ TEST(aovs_stand_before_their_functions)
         {"//@ aov x\n", "a choice `x` already"}};
     for (size_t i = 0; i < sizeof more / sizeof *more; ++i) {
         strcpy(text + full, more[i][0]);
-        assert_int_equal(read_text(text, &shader), WHIT_ERROR_INPUT);
-        assert_int_equal(errors.items[0].line, 2 + 3 * SHADER_AOVS_MAX);
-        if (!strstr(errors.items[0].reason, more[i][1]))
-            fail_msg("%s: %s", more[i][0], errors.items[0].reason);
-        shader_text_free(&shader.text);
+        refuse_shader(text, 2 + 3 * SHADER_AOVS_MAX, more[i][1]);
     }
 }
 
 TEST(there_are_as_many_values_as_fit)
 {
     char text[8192] = "";
-    whit_shader shader;
     for (int i = 0; i < SHADER_SLIDERS_MAX / 3 + 1; ++i)
         sprintf(text + strlen(text), "//@ color c%d #ffffff\n", i);
-    strcat(text, "vec3 miss(vec3 dir) { return dir; }\n");
-    assert_int_equal(read_text(text, &shader), WHIT_ERROR_INPUT);
-    assert_int_equal(errors.count, 1);
-    assert_int_equal(errors.items[0].line, SHADER_SLIDERS_MAX / 3 + 1);
-    shader_text_free(&shader.text);
+    strcat(text, MISS);
+    refuse_shader(text, SHADER_SLIDERS_MAX / 3 + 1, "");
 }
 
 TEST(expectations_are_read)
 {
-    whit_shader shader;
-    assert_int_equal(read_text("//@ expect ids == base\n//@ expect rays.shadow == base\n"
-                               "vec3 miss(vec3 dir) { return dir; }\n",
-                               &shader),
+    assert_int_equal(read_shader("//@ expect ids == base\n//@ expect rays.shadow == base\n" MISS),
                      WHIT_OK);
     assert_int_equal(shader.expectation_count, 2);
     assert_int_equal(shader.expectations[0].what, WHIT_EXPECT_IDS);
     assert_int_equal(shader.expectations[1].what, WHIT_EXPECT_SHADOW);
     assert_string_equal(shader.expectations[1].word, "rays.shadow");
     assert_int_equal(shader.expectations[1].line, 2);
-    shader_text_free(&shader.text);
 }
 
 /* ---- Tests in a file ---- */
 
-static whit_result read_tests(const char *content, struct shader_text *text,
-                              struct shader_tests *tests)
+static struct shader_text text;
+static struct shader_tests tests;
+
+static whit_result read_tests(const char *content)
 {
-    const struct shader_text_source source = {"a.glsl", content, strlen(content)};
-    errors = (struct shader_errors){0};
-    assert_int_equal(shader_text_from(NULL, &source, 1, text, &errors), WHIT_OK);
-    return shader_tests_read(NULL, text, tests, &errors);
+    assert_int_equal(read_text(content, &text), WHIT_OK);
+    shader_tests_free(&tests);
+    return shader_tests_read(NULL, &text, &tests, &errors);
 }
 
 static const char tested[] = "float f(float x) { return x; } // check(\n"
@@ -335,9 +307,7 @@ static const char tested[] = "float f(float x) { return x; } // check(\n"
 
 TEST(tests_and_their_checks_are_found)
 {
-    struct shader_text text;
-    struct shader_tests tests;
-    assert_int_equal(read_tests(tested, &text, &tests), WHIT_OK);
+    assert_int_equal(read_tests(tested), WHIT_OK);
     assert_int_equal(tests.test_count, 2);
     assert_string_equal(tests.tests[0].name, "one");
     assert_int_equal(tests.tests[0].line, 3);
@@ -350,16 +320,13 @@ TEST(tests_and_their_checks_are_found)
     assert_string_equal(tests.checks[2].text, "(n)==n");
     assert_int_equal(tests.checks[2].number, 0);
     assert_int_equal(shader_tests_words(&tests), 1);
-    shader_tests_free(&tests);
-    shader_text_free(&text);
 }
 
 TEST(kernels_have_tests_numbered_or_blank_in_the_same_lines)
 {
-    struct shader_text text, out;
-    struct shader_tests tests;
+    struct shader_text out;
     char blank[sizeof tested];
-    assert_int_equal(read_tests(tested, &text, &tests), WHIT_OK);
+    assert_int_equal(read_tests(tested), WHIT_OK);
     strcpy(blank, tested);
     for (uint32_t i = 0; i < tests.test_count; ++i) {
         assert_memory_equal(blank + tests.tests[i].begin, "void ", 5);
@@ -376,8 +343,6 @@ TEST(kernels_have_tests_numbered_or_blank_in_the_same_lines)
     assert_non_null(strstr(out.files[0].text, "check(0u, 2u, true);"));
     assert_non_null(strstr(out.files[0].text, "{ check(0u, 1u, (n)==n); } float g()"));
     shader_text_end_copy(&out);
-    shader_tests_free(&tests);
-    shader_text_free(&text);
 }
 
 /* ---- dbg(x) ---- */
@@ -391,37 +356,29 @@ static const char looked_at[] = "#if 0\n"
                                 "    return dbg( dbg  +\n"
                                 "        1.0) * dbg(g(dbg (vec2(2.0, dbg)))); }\n";
 
-static whit_result read_dbg(const char *content, struct shader_text *text, struct shader_dbg *dbg)
+static struct shader_dbg dbg;
+
+static whit_result read_dbg(const char *content)
 {
-    const struct shader_text_source source = {"a.glsl", content, strlen(content)};
-    struct shader_tests tests;
-    errors = (struct shader_errors){0};
-    assert_int_equal(shader_text_from(NULL, &source, 1, text, &errors), WHIT_OK);
-    assert_int_equal(shader_tests_read(NULL, text, &tests, &errors), WHIT_OK);
-    whit_result result = shader_dbg_read(NULL, text, &tests, dbg, &errors);
-    shader_tests_free(&tests);
-    return result;
+    assert_int_equal(read_tests(content), WHIT_OK);
+    return shader_dbg_read(NULL, &text, &tests, &dbg, &errors);
 }
 
 TEST(values_that_are_looked_at_are_found_in_any_expression)
 {
-    struct shader_text text;
-    struct shader_dbg dbg;
-    assert_int_equal(read_dbg(looked_at, &text, &dbg), WHIT_OK);
+    assert_int_equal(read_dbg(looked_at), WHIT_OK);
     assert_int_equal(dbg.count, 3);
     assert_string_equal(dbg.sites[0].text, "dbg + 1.0");
     assert_int_equal(dbg.sites[0].line, 7);
     assert_string_equal(dbg.sites[1].text, "g(dbg (vec2(2.0, dbg)))");
     assert_string_equal(dbg.sites[2].text, "vec2(2.0, dbg)");
     assert_int_equal(dbg.sites[2].line, 8);
-    shader_text_free(&text);
 }
 
 TEST(kernels_have_them_numbered_or_blank_in_the_same_lines)
 {
-    struct shader_text text, out;
-    struct shader_dbg dbg;
-    assert_int_equal(read_dbg(looked_at, &text, &dbg), WHIT_OK);
+    struct shader_text out;
+    assert_int_equal(read_dbg(looked_at), WHIT_OK);
     assert_true(shader_dbg_text(&dbg, &text, false, &out));
     assert_int_equal(strlen(out.files[0].text), strlen(looked_at));
     assert_non_null(strstr(out.files[0].text, "return    ( dbg  +\n        1.0) *    "
@@ -433,18 +390,13 @@ TEST(kernels_have_them_numbered_or_blank_in_the_same_lines)
     assert_non_null(strstr(out.files[0].text, "return dbg(0u,  dbg  +\n        1.0) * "
                                               "dbg(1u, g(dbg (2u, vec2(2.0, dbg)))); }\n"));
     shader_text_end_copy(&out);
-    shader_text_free(&text);
 }
 
 TEST(a_function_of_that_name_is_the_users)
 {
-    struct shader_text text;
-    struct shader_dbg dbg;
-    assert_int_equal(
-        read_dbg("float dbg(float a, float b) { return a; } float c = dbg(1.0, 2.0);", &text, &dbg),
-        WHIT_OK);
+    assert_int_equal(read_dbg("float dbg(float a, float b) { return a; } float c = dbg(1.0, 2.0);"),
+                     WHIT_OK);
     assert_int_equal(dbg.count, 0);
-    shader_text_free(&text);
 }
 
 TEST(values_that_cannot_be_looked_at_are_refused_with_their_line)
@@ -465,30 +417,23 @@ TEST(values_that_cannot_be_looked_at_are_refused_with_their_line)
         {"//@ test\nvoid a(uint s) {\ncheck(dbg(true)); }\n", "a test has none", 3},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        struct shader_text text;
-        struct shader_dbg dbg;
-        assert_int_equal(read_dbg(cases[i].content, &text, &dbg), WHIT_ERROR_INPUT);
+        assert_int_equal(read_dbg(cases[i].content), WHIT_ERROR_INPUT);
         assert_int_equal(errors.count, 1);
         assert_int_equal(errors.items[0].line, cases[i].line);
         assert_non_null(strstr(errors.items[0].reason, cases[i].why));
-        shader_text_free(&text);
     }
 }
 
 TEST(a_file_has_a_number_of_them_at_most)
 {
     char content[16 + 8 * (SHADER_DBG_MAX + 1) + 4] = "void f() {";
-    struct shader_text text;
-    struct shader_dbg dbg;
     for (uint32_t i = 0; i < SHADER_DBG_MAX; ++i)
         strcat(content, "dbg(1);\n");
-    assert_int_equal(read_dbg(strcat(content, "}"), &text, &dbg), WHIT_OK);
+    assert_int_equal(read_dbg(strcat(content, "}")), WHIT_OK);
     assert_int_equal(dbg.count, SHADER_DBG_MAX);
-    shader_text_free(&text);
     strcpy(content + strlen(content) - 1, "dbg(1);}");
-    assert_int_equal(read_dbg(content, &text, &dbg), WHIT_ERROR_INPUT);
+    assert_int_equal(read_dbg(content), WHIT_ERROR_INPUT);
     assert_int_equal(errors.items[0].line, SHADER_DBG_MAX + 1);
-    shader_text_free(&text);
 }
 
 TEST(tests_that_are_none_are_refused_with_their_line)
@@ -515,22 +460,15 @@ TEST(tests_that_are_none_are_refused_with_their_line)
         {"void f() {\n check(true); }\n", outside, 2},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        struct shader_text text;
-        struct shader_tests tests;
-        if (read_tests(cases[i].content, &text, &tests) != WHIT_ERROR_INPUT || errors.count != 1 ||
+        if (read_tests(cases[i].content) != WHIT_ERROR_INPUT || errors.count != 1 ||
             errors.items[0].line != cases[i].line || !strstr(errors.items[0].reason, cases[i].why))
             fail_msg("%s: %u errors, %u: %s", cases[i].content, errors.count, errors.items[0].line,
                      errors.items[0].reason);
-        shader_text_free(&text);
     }
 }
 
 TEST(a_file_without_tests_may_have_a_function_check)
 {
-    struct shader_text text;
-    struct shader_tests tests;
-    assert_int_equal(
-        read_tests("void check(bool b) {}\nvoid f() { check(true); }\n", &text, &tests), WHIT_OK);
+    assert_int_equal(read_tests("void check(bool b) {}\nvoid f() { check(true); }\n"), WHIT_OK);
     assert_int_equal(tests.test_count, 0);
-    shader_text_free(&text);
 }
