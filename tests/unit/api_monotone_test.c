@@ -109,7 +109,6 @@ TEST_IN(error_falls_or_it_is_said_why, device_begin, device_end)
         check_knob(name, false, &tally);
         check_knob(name, true, &tally);
         whit_renderer_destroy(renderer);
-        scene_close();
     }
     print_message("%zu scenes, %d steps: %d rises, %d of them unexplained\n", paths.gl_pathc,
                   tally.steps, tally.rises, tally.unexplained);

@@ -53,6 +53,9 @@ static whit_refine_info refine_to(const struct refining *o, uint32_t samples)
     return info;
 }
 
+/* Ends with its block: own_refining o = begin(...); */
+#define own_refining __attribute__((cleanup(end))) struct refining
+
 /* Rays of the last part that the renderer drew. */
 static uint64_t rays_of(const whit_renderer *renderer)
 {
@@ -72,7 +75,7 @@ TEST(a_refined_picture_is_that_of_as_many_samples)
 {
     const whit_renderer_params few = params_of(3, 0.05);
     scene_open(WHIT_SCENES_DIR "/balls.json");
-    struct refining o = begin(&few);
+    own_refining o = begin(&few);
     whit_refine_info info = step(&o);
     uint64_t rays = rays_of(o.renderer); /* of all steps */
     assert_int_equal(info.samples, 1);
@@ -88,16 +91,13 @@ TEST(a_refined_picture_is_that_of_as_many_samples)
         rays += rays_of(o.renderer);
         assert_int_equal(info.samples, samples);
         assert_true(info.error > info.error_of_cuts && info.error_of_cuts > 0.0 && !info.last);
-        whit_image *refined = picture_of(&o);
+        own_whit_image *refined = picture_of(&o);
         whit_refine_get_stats(o.refine, &stats);
         params.sampling.count = samples;
-        whit_renderer *renderer = renderer_of(&params);
-        assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-        whit_image *drawn = image_of(renderer, WHIT_AOV_COLOR);
-        whit_image *cuts = image_of(renderer, WHIT_AOV_CUTS);
+        own_whit_renderer *renderer = renderer_of(&params);
+        own_whit_image *drawn = drawn_by(renderer), *cuts = image_of(renderer, WHIT_AOV_CUTS);
         whit_renderer_get_stats(renderer, &drawn_stats);
-        assert_memory_equal(whit_image_floats(refined), whit_image_floats(drawn),
-                            PIXELS * 4 * sizeof(float));
+        assert_same_image(refined, drawn);
         double depth = 0.0, bailout = 0.0;
         for (int i = 0; i < PIXELS; ++i) {
             depth = fmax(depth, (double)whit_image_floats(cuts)[2 * i]);
@@ -116,13 +116,7 @@ TEST(a_refined_picture_is_that_of_as_many_samples)
         assert_int_equal(rays, whit_stats_rays(&drawn_stats) + stats.rays_of_estimate);
         assert_memory_equal(stats.pixels_by_samples, drawn_stats.pixels_by_samples,
                             sizeof stats.pixels_by_samples);
-        whit_image_destroy(refined);
-        whit_image_destroy(drawn);
-        whit_image_destroy(cuts);
-        whit_renderer_destroy(renderer);
     }
-    end(&o);
-    scene_close();
 }
 
 /* What surfaces get without the rays that they send on is a picture without bounces, which has the
@@ -132,15 +126,13 @@ TEST(cut_rays_are_assumed_to_bring_what_others_bring_beside_the_light_of_lights)
     whit_renderer_params params = params_of(3, 0.05);
     double brought = 0.0, weights = 0.0;
     scene_open(WHIT_SCENES_DIR "/balls.json");
-    struct refining o = begin(&params);
+    own_refining o = begin(&params);
     step(&o);
-    whit_image *whole = picture_of(&o);
+    own_whit_image *whole = picture_of(&o);
     whit_refine_info info = step(&o);
     params.depth = 0;
-    whit_renderer *renderer = renderer_of(&params);
-    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    whit_image *own = image_of(renderer, WHIT_AOV_COLOR);
-    whit_image *cuts = image_of(renderer, WHIT_AOV_CUTS);
+    own_whit_renderer *renderer = renderer_of(&params);
+    own_whit_image *own = drawn_by(renderer), *cuts = image_of(renderer, WHIT_AOV_CUTS);
     for (int i = 0; i < PIXELS; ++i) {
         const float *a = whit_image_floats(whole) + 4 * i, *b = whit_image_floats(own) + 4 * i;
         brought += fmax(fmax((double)a[0] - (double)b[0], (double)a[1] - (double)b[1]),
@@ -148,12 +140,6 @@ TEST(cut_rays_are_assumed_to_bring_what_others_bring_beside_the_light_of_lights)
         weights += (double)whit_image_floats(cuts)[2 * i];
     }
     assert_true(fabs(info.cut_radiance - brought / weights) < 0.01 * info.cut_radiance);
-    whit_image_destroy(whole);
-    whit_image_destroy(own);
-    whit_image_destroy(cuts);
-    whit_renderer_destroy(renderer);
-    end(&o);
-    scene_close();
 }
 
 TEST(a_step_that_is_cancelled_can_be_taken_again)
@@ -161,36 +147,27 @@ TEST(a_step_that_is_cancelled_can_be_taken_again)
     volatile bool cancel = false;
     whit_renderer_params params = params_of(8, 0.0);
     scene_open(WHIT_SCENES_DIR "/cube.json");
-    struct refining other = begin(&params);
+    own_refining other = begin(&params);
     params.cancel = &cancel;
-    struct refining o = begin(&params);
+    own_refining o = begin(&params);
     refine_to(&o, 2);
-    whit_image *before = picture_of(&o);
+    own_whit_image *before = picture_of(&o);
     cancel = true;
     assert_int_equal(whit_refine_step(o.refine), WHIT_ERROR_CANCELLED);
-    whit_image *kept = picture_of(&o);
-    assert_memory_equal(whit_image_floats(kept), whit_image_floats(before),
-                        PIXELS * 4 * sizeof(float));
+    own_whit_image *kept = picture_of(&o);
+    assert_same_image(kept, before);
     cancel = false;
     whit_refine_info info = refine_to(&o, 4), wanted = refine_to(&other, 4);
     assert_true(info.error == wanted.error && info.error > 0.0);
-    whit_image *after = picture_of(&o), *straight = picture_of(&other);
-    assert_memory_equal(whit_image_floats(after), whit_image_floats(straight),
-                        PIXELS * 4 * sizeof(float));
-    whit_image_destroy(before);
-    whit_image_destroy(kept);
-    whit_image_destroy(after);
-    whit_image_destroy(straight);
-    end(&other);
-    end(&o);
-    scene_close();
+    own_whit_image *after = picture_of(&o), *straight = picture_of(&other);
+    assert_same_image(after, straight);
 }
 
 TEST(what_is_not_there_is_refused)
 {
     const whit_renderer_params params = params_of(8, 0.0);
     scene_open(WHIT_SCENES_DIR "/cube.json");
-    struct refining o = begin(&params);
+    own_refining o = begin(&params);
     const float none[4][4] = {{0}};
     whit_image *image = NULL;
     assert_int_equal(whit_refine_image(o.refine, &image), WHIT_ERROR_USAGE);
@@ -205,14 +182,11 @@ TEST(what_is_not_there_is_refused)
                      WHIT_ERROR_USAGE);
     assert_true(refine_to(&o, WHIT_SAMPLES_MAX).last);
     assert_int_equal(whit_refine_step(o.refine), WHIT_ERROR_USAGE);
-    whit_renderer *no_device = NULL;
+    own_whit_renderer *no_device = NULL;
     whit_refine *refine = NULL;
     assert_int_equal(whit_renderer_create(NULL, accel, &o.params, &no_device), WHIT_OK);
     assert_int_equal(whit_refine_create(no_device, &o.params, &refine), WHIT_ERROR_USAGE);
     assert_null(refine);
-    whit_renderer_destroy(no_device);
-    end(&o);
-    scene_close();
 }
 
 /* ---- The estimate compared with the true error ---- */
@@ -324,8 +298,8 @@ static bool judge_scene(const char *path, const char *name)
 {
     const struct question question = question_of(name);
     scene_open(path);
-    struct refining o = begin(&question.params);
-    whit_image *truth = truth_of(&o, question.truth_bailout);
+    own_refining o = begin(&question.params);
+    own_whit_image *truth = truth_of(&o, question.truth_bailout);
     int pixels = (int)(question.params.width * question.params.height);
     bool good = true;
     for (uint32_t samples = SAMPLES_FIRST; samples <= SAMPLES_LAST; samples *= 2) {
@@ -339,9 +313,6 @@ static bool judge_scene(const char *path, const char *name)
                       is_good(&judged) ? "" : "short");
         good &= is_good(&judged);
     }
-    whit_image_destroy(truth);
-    end(&o);
-    scene_close();
     return good;
 }
 

@@ -25,11 +25,11 @@ TEST(rays_on_the_cpu_are_traced_at_the_time_of_their_renderer)
 {
     whit_hit hits[2][RAYS], again[RAYS];
     const whit_renderer_params early = params_at(0.0), late = params_at(1.5);
-    whit_renderer *on_cpu = NULL;
+    own_whit_renderer *on_cpu = NULL;
     scene_open(WHIT_SCENES_DIR "/spin.json");
     assert_int_equal(whit_renderer_create(NULL, accel, &late, &on_cpu), WHIT_OK);
     trace(on_cpu, WHIT_TRACE_CPU_FLOAT, hits[1]);
-    whit_renderer *first = renderer_of(&early);
+    own_whit_renderer *first = renderer_of(&early);
     trace(first, WHIT_TRACE_CPU_FLOAT, hits[0]);
     assert_memory_not_equal(hits[0], hits[1], sizeof again);
     trace(on_cpu, WHIT_TRACE_CPU_FLOAT, again);
@@ -42,9 +42,6 @@ TEST(rays_on_the_cpu_are_traced_at_the_time_of_their_renderer)
     assert_memory_equal(again, hits[0], sizeof again);
     trace(first, WHIT_TRACE_CPU_BRUTE, again);
     assert_memory_equal(again, hits[1], sizeof again);
-    whit_renderer_destroy(on_cpu);
-    whit_renderer_destroy(first);
-    scene_close();
 }
 
 TEST(probes_and_references_stay_at_their_time)
@@ -56,16 +53,13 @@ TEST(probes_and_references_stay_at_their_time)
     scene_open(WHIT_SCENES_DIR "/spin.json");
     assert_int_equal(whit_reference_create(accel, &late, 0, &reference), WHIT_OK);
     assert_int_equal(whit_reference_render(reference, &before, NULL), WHIT_OK);
-    whit_renderer *renderer = renderer_of(&early);
+    own_whit_renderer *renderer = renderer_of(&early);
     assert_int_equal(whit_reference_render(reference, &after, NULL), WHIT_OK);
-    assert_memory_equal(whit_image_floats(before), whit_image_floats(after),
-                        sizeof(float) * 4 * WIDTH * HEIGHT);
+    assert_same_image(before, after);
     for (uint32_t x = 0; x < WIDTH; ++x) {
         assert_int_equal(whit_probe(renderer, x, HEIGHT / 2, 0, &report), WHIT_OK);
         assert_int_equal(report->differing, 0);
         whit_probe_report_destroy(report);
     }
     whit_reference_destroy(reference);
-    whit_renderer_destroy(renderer);
-    scene_close();
 }

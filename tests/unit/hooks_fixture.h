@@ -12,10 +12,8 @@ static inline int hooks_begin(void **state)
     return device_begin(state);
 }
 
-/* Destroys compiler and device, and the scene if one is open. */
 static inline int hooks_end(void **state)
 {
-    scene_close();
     device_end(state);
     whit_shader_compiler_destroy(compiler);
     return 0;

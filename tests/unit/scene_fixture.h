@@ -20,26 +20,29 @@ static inline int device_begin(void **state)
     return 0;
 }
 
-static inline int device_end(void **state)
-{
-    (void)state;
-    whit_device_destroy(device);
-    return 0;
-}
-
-static inline void scene_open(const char *path)
-{
-    if (whit_scene_load(path, NULL, &warnings_log, &scene) != WHIT_OK)
-        fail_msg("%s", messages.last_error);
-    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
-}
-
 static inline void scene_close(void)
 {
     whit_accel_destroy(accel);
     whit_scene_destroy(scene);
     accel = NULL;
     scene = NULL;
+}
+
+static inline int device_end(void **state)
+{
+    (void)state;
+    scene_close();
+    whit_device_destroy(device);
+    return 0;
+}
+
+/* The last scene is closed; nothing of it may be left. */
+static inline void scene_open(const char *path)
+{
+    scene_close();
+    if (whit_scene_load(path, NULL, &warnings_log, &scene) != WHIT_OK)
+        fail_msg("%s", messages.last_error);
+    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
 }
 
 static inline whit_renderer_params params_sized(uint32_t width, uint32_t height,
@@ -81,6 +84,23 @@ static inline whit_image *image_of(whit_renderer *renderer, whit_aov aov)
     whit_image *image = NULL;
     assert_int_equal(whit_renderer_image(renderer, aov, &image), WHIT_OK);
     return image;
+}
+
+/* Draws a picture, and gives its colours. */
+static inline whit_image *drawn_by(whit_renderer *renderer)
+{
+    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
+    return image_of(renderer, WHIT_AOV_COLOR);
+}
+
+static inline void assert_same_image(const whit_image *a, const whit_image *b)
+{
+    whit_image_info info, other;
+    whit_image_get_info(a, &info);
+    whit_image_get_info(b, &other);
+    assert_true(info.width == other.width && info.height == other.height);
+    assert_memory_equal(whit_image_floats(a), whit_image_floats(b),
+                        (size_t)info.width * info.height * 4 * sizeof(float));
 }
 
 static inline whit_image *reference_image(const whit_renderer_params *params)

@@ -45,12 +45,22 @@ struct drawn {
     whit_image *color, *ids, *aovs[AOVS];
 };
 
+static void drop(struct drawn *drawn)
+{
+    whit_image_destroy(drawn->color);
+    whit_image_destroy(drawn->ids);
+    for (int i = 0; i < AOVS; ++i)
+        whit_image_destroy(drawn->aovs[i]);
+}
+
+/* Freed at the end of its block: own_drawn all = draw(...); */
+#define own_drawn __attribute__((cleanup(drop))) struct drawn
+
 static struct drawn draw(const whit_renderer_params *params)
 {
     struct drawn drawn = {0};
     own_whit_renderer *renderer = renderer_of(params);
-    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    drawn.color = image_of(renderer, WHIT_AOV_COLOR);
+    drawn.color = drawn_by(renderer);
     if (!params->sampling.first) /* ids are those of the first sample */
         drawn.ids = image_of(renderer, WHIT_AOV_IDS);
     for (uint32_t i = 0; params->shader && i < AOVS; ++i)
@@ -65,25 +75,12 @@ static struct drawn draw(const whit_renderer_params *params)
     return drawn;
 }
 
-static void drop(struct drawn *drawn)
-{
-    whit_image_destroy(drawn->color);
-    whit_image_destroy(drawn->ids);
-    for (int i = 0; i < AOVS; ++i)
-        whit_image_destroy(drawn->aovs[i]);
-}
-
 static const float *floats(const whit_image *image)
 {
     whit_image_info info;
     whit_image_get_info(image, &info);
     assert_int_equal(info.width * info.height, PIXELS);
     return whit_image_floats(image);
-}
-
-static void assert_same(const whit_image *a, const whit_image *b)
-{
-    assert_memory_equal(floats(a), floats(b), PIXELS * 4 * sizeof(float));
 }
 
 static bool is_miss(const struct drawn *drawn, uint32_t pixel)
@@ -114,25 +111,23 @@ static void look_at_step(void *user, const whit_step *step)
 TEST(steps_show_the_value_that_is_asked_for)
 {
     whit_renderer_params params = usual(1);
-    struct drawn drawn = draw(&params);
+    own_drawn drawn = draw(&params);
     for (uint32_t aov = 0; aov <= AOVS; ++aov) {
         struct steps steps = {.whole = floats(aov ? drawn.aovs[aov - 1] : drawn.color)};
         params.step_spacing = 8;
         params.step_aov = aov;
         params.step = look_at_step;
         params.progress_user = &steps;
-        struct drawn again = draw(&params);
+        own_drawn again = draw(&params);
         assert_int_equal(steps.seen, 3);
         assert_int_equal(steps.wrong, 0);
-        drop(&again);
     }
-    drop(&drawn);
 }
 
 TEST(a_sample_says_what_the_camera_meets)
 {
     const whit_renderer_params params = usual(1);
-    struct drawn drawn = draw(&params);
+    own_drawn drawn = draw(&params);
     const uint32_t *ids = whit_image_words(drawn.ids);
     const float *place = floats(drawn.aovs[0]), *id = floats(drawn.aovs[1]);
     uint32_t misses = 0;
@@ -145,7 +140,6 @@ TEST(a_sample_says_what_the_camera_meets)
                     id[4 * i + 2] == (miss ? 0.0f : 1000.0f));
     }
     assert_true(misses > 100 && misses < PIXELS - 100);
-    drop(&drawn);
 }
 
 /* Such functions change neither colours nor identities, with any number of samples. */
@@ -153,14 +147,12 @@ TEST(nothing_else_changes)
 {
     for (uint32_t samples = 1; samples <= 4; samples *= 4) {
         whit_renderer_params params = usual(samples);
-        struct drawn with = draw(&params);
+        own_drawn with = draw(&params);
         params.shader = NULL;
-        struct drawn without = draw(&params);
-        assert_same(with.color, without.color);
+        own_drawn without = draw(&params);
+        assert_same_image(with.color, without.color);
         assert_memory_equal(whit_image_words(with.ids), whit_image_words(without.ids),
                             PIXELS * 2 * sizeof(uint32_t));
-        drop(&with);
-        drop(&without);
     }
 }
 
@@ -168,11 +160,11 @@ TEST(nothing_else_changes)
 TEST_BY_TURNS(samples_are_averaged, 0, 2)
 {
     whit_renderer_params params = usual(4);
-    struct drawn all = draw(&params);
+    own_drawn all = draw(&params);
     params.sampling.count = 2;
-    struct drawn first = draw(&params);
+    own_drawn first = draw(&params);
     params.sampling.first = 2;
-    struct drawn second = draw(&params);
+    own_drawn second = draw(&params);
     uint32_t others = 0;
     for (int aov = 0; aov < AOVS; ++aov) {
         const float *mean = floats(all.aovs[aov]), *a = floats(first.aovs[aov]),
@@ -184,30 +176,25 @@ TEST_BY_TURNS(samples_are_averaged, 0, 2)
         }
     }
     assert_true(others > PIXELS);
-    drop(&all);
-    drop(&first);
-    drop(&second);
 }
 
 TEST_BY_TURNS(tiles_leave_them_as_they_are, 1, 2)
 {
     whit_renderer_params params = usual(4);
-    struct drawn whole = draw(&params);
+    own_drawn whole = draw(&params);
     params.tile_size = 16;
-    struct drawn tiled = draw(&params);
+    own_drawn tiled = draw(&params);
     for (int aov = 0; aov < AOVS; ++aov)
-        assert_same(whole.aovs[aov], tiled.aovs[aov]);
-    drop(&tiled);
-    drop(&whole);
+        assert_same_image(whole.aovs[aov], tiled.aovs[aov]);
 }
 
 /* A pixel of an adaptive picture has the values of a picture with the same number of samples. */
 TEST_BY_TURNS(adaptive_samples_have_those_of_their_number, 0, 2)
 {
     whit_renderer_params params = usual(4);
-    struct drawn four = draw(&params);
+    own_drawn four = draw(&params);
     params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 0.1};
-    struct drawn adaptive = draw(&params);
+    own_drawn adaptive = draw(&params);
     uint32_t same = 0, flat = 0, hits = 0, anew = 0;
     for (uint32_t i = 0; i < PIXELS; ++i) {
         bool colors = memcmp(floats(four.color) + 4 * i, floats(adaptive.color) + 4 * i, 12) == 0;
@@ -223,18 +210,16 @@ TEST_BY_TURNS(adaptive_samples_have_those_of_their_number, 0, 2)
     assert_true(flat > PIXELS / 4 && flat < PIXELS);
     assert_true(hits > 0 && anew == hits); /* more samples have other random numbers */
     assert_true(same * 100 > flat * 99);   /* some colours are equal by chance */
-    drop(&adaptive);
-    drop(&four);
 }
 
 TEST_BY_TURNS(refined_pictures_have_those_of_all_samples, 1, 2)
 {
     whit_renderer_params params = usual(4);
-    struct drawn four = draw(&params);
+    own_drawn four = draw(&params);
     whit_refine *refine;
     whit_refine_info info;
     whit_image *aov;
-    whit_renderer *renderer = renderer_of(&params);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_refine_create(renderer, &params, &refine), WHIT_OK);
     do {
         assert_int_equal(whit_refine_step(refine), WHIT_OK);
@@ -250,8 +235,6 @@ TEST_BY_TURNS(refined_pictures_have_those_of_all_samples, 1, 2)
     }
     assert_int_equal(whit_refine_aov(refine, AOVS, &aov), WHIT_ERROR_USAGE);
     whit_refine_destroy(refine);
-    whit_renderer_destroy(renderer);
-    drop(&four);
 }
 
 /* Each number of the surface that surface() returns comes from another kernel. */
@@ -273,7 +256,7 @@ TEST(values_are_of_the_surface_as_it_is_changed)
     own_whit_shader *changing = hooks_load(changes);
     uint32_t hits = 0, wrong = 0, turned = 0;
     params.shader = changing;
-    struct drawn drawn = draw(&params);
+    own_drawn drawn = draw(&params);
     for (uint32_t pixel = 0; pixel < PIXELS; ++pixel) {
         const float *normal = &floats(drawn.aovs[2])[4 * pixel];
         if (is_miss(&drawn, pixel))
@@ -286,7 +269,6 @@ TEST(values_are_of_the_surface_as_it_is_changed)
     }
     assert_true(hits > PIXELS / 4 && turned > PIXELS / 8);
     assert_int_equal(wrong, 0);
-    drop(&drawn);
 }
 
 static double render_ms(const whit_renderer *renderer)
@@ -300,8 +282,7 @@ static double render_ms(const whit_renderer *renderer)
 /* Draws a picture, and reads its colours, its ids and its first aov. */
 static void draw_again(whit_renderer *renderer, struct drawn *drawn)
 {
-    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    drawn->color = image_of(renderer, WHIT_AOV_COLOR);
+    drawn->color = drawn_by(renderer);
     drawn->ids = image_of(renderer, WHIT_AOV_IDS);
     drawn->aovs[0] = image_of(renderer, WHIT_AOV_SHADER);
 }
@@ -319,8 +300,8 @@ static bool draw_in_place(whit_renderer *renderer, const whit_renderer_params *p
 
 static void assert_same_picture(const struct drawn *in_place, const struct drawn *alone)
 {
-    assert_same(in_place->color, alone->color);
-    assert_same(in_place->aovs[0], alone->aovs[0]);
+    assert_same_image(in_place->color, alone->color);
+    assert_same_image(in_place->aovs[0], alone->aovs[0]);
     assert_memory_equal(whit_image_words(in_place->ids), whit_image_words(alone->ids),
                         PIXELS * 2 * sizeof(uint32_t));
 }
@@ -364,35 +345,29 @@ static whit_shader *load_version(size_t i, bool posts)
 /* If only post() and aovs have changed, colours are not drawn anew. */
 static void draw_versions(whit_renderer_params params, bool posts)
 {
-    whit_shader *before = load_version(0, posts);
+    own_whit_shader *before = load_version(0, posts);
     params.shader = before;
     params.reuse_rays = true;
     params.time_stages = true;
-    whit_renderer *renderer = renderer_of(&params);
+    own_whit_renderer *renderer = renderer_of(&params);
     whit_stats first, stats;
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     whit_renderer_get_stats(renderer, &first);
     assert_true(first.share_count > 0 || !posts);
     for (size_t i = 1; i < VERSIONS; ++i) {
-        whit_renderer *other;
-        struct drawn in_place = {0}, alone = {0};
+        own_drawn in_place = {0}, alone = {0};
         whit_shader *version = load_version(i, posts);
         params.shader = version;
         if (draw_in_place(renderer, &params, &in_place) != versions[i].anew)
             fail_msg("drawn anew or not: %s", versions[i].value);
         whit_renderer_get_stats(renderer, &stats);
         assert_true(!posts || stats.share_count == first.share_count);
-        other = renderer_of(&params);
+        own_whit_renderer *other = renderer_of(&params);
         draw_again(other, &alone);
         assert_same_picture(&in_place, &alone);
-        whit_renderer_destroy(other);
-        drop(&in_place);
-        drop(&alone);
         whit_shader_destroy(before);
         before = version;
     }
-    whit_renderer_destroy(renderer);
-    whit_shader_destroy(before);
 }
 
 TEST(other_values_leave_the_colours)
@@ -410,35 +385,28 @@ TEST(other_values_of_many_samples_in_tiles_leave_the_colours)
 /* Steps show the new values of an aov; colours, which are kept, come all at once. */
 TEST(steps_show_other_values)
 {
-    whit_shader *versions_of[2] = {load_version(0, true), load_version(1, true)};
+    own_whit_shader *first = load_version(0, true), *second = load_version(1, true);
     for (uint32_t aov = 0; aov < 2; ++aov) {
-        whit_renderer *renderer;
-        struct drawn alone = {0}, in_place = {0};
+        own_drawn alone = {0}, in_place = {0};
         whit_renderer_params params = usual(1);
-        params.shader = versions_of[1];
-        renderer = renderer_of(&params);
-        draw_again(renderer, &alone);
-        whit_renderer_destroy(renderer);
+        params.shader = second;
+        own_whit_renderer *other = renderer_of(&params);
+        draw_again(other, &alone);
         struct steps steps = {.whole = floats(aov ? alone.aovs[0] : alone.color)};
-        params.shader = versions_of[0];
+        params.shader = first;
         params.step = look_at_step;
         params.progress_user = &steps;
         params.reuse_rays = true;
-        renderer = renderer_of(&params);
+        own_whit_renderer *renderer = renderer_of(&params);
         assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-        params.shader = versions_of[1];
+        params.shader = second;
         params.step_spacing = 8;
         params.step_aov = aov;
         assert_false(draw_in_place(renderer, &params, &in_place));
         assert_same_picture(&in_place, &alone);
         assert_int_equal(steps.seen, aov ? 3 : 1);
         assert_int_equal(steps.wrong, 0);
-        whit_renderer_destroy(renderer);
-        drop(&in_place);
-        drop(&alone);
     }
-    whit_shader_destroy(versions_of[0]);
-    whit_shader_destroy(versions_of[1]);
 }
 
 TESTS_IN(begin, end)

@@ -18,11 +18,9 @@ static whit_image *draw(const whit_shader *shader, uint64_t added, uint64_t *com
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     whit_kernel list[WHIT_KERNELS_MAX];
     params.effects_added = added;
-    whit_renderer *renderer = renderer_of(&params);
-    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    whit_image *color = image_of(renderer, WHIT_AOV_COLOR);
+    own_whit_renderer *renderer = renderer_of(&params);
+    whit_image *color = drawn_by(renderer);
     *compiled = effects_compiled(renderer);
-    whit_renderer_destroy(renderer);
     *kernels = 0;
     uint32_t count;
     assert_int_equal(whit_kernels_list(device, accel, &params, true, list, &count), WHIT_OK);
@@ -69,8 +67,7 @@ TEST(what_is_not_asked_for_is_not_compiled)
         if (cases_turn(i, 3)) {
             own_whit_image *whole = draw(shader, all, &forced, &more);
             assert_int_equal(forced & all, all);
-            assert_memory_equal(whit_image_floats(usual), whit_image_floats(whole),
-                                PIXELS * 4 * sizeof(float));
+            assert_same_image(usual, whole);
         }
     }
 }
@@ -100,11 +97,8 @@ static void is_as(whit_renderer *renderer, const whit_renderer_params *params,
     usual.few_pixels = false;
     usual.shader = shader;
     own_whit_renderer *other = renderer_of(&usual);
-    assert_int_equal(whit_renderer_render(other), WHIT_OK);
-    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    own_whit_image *a = image_of(renderer, WHIT_AOV_COLOR), *b = image_of(other, WHIT_AOV_COLOR);
-    assert_memory_equal(whit_image_floats(a), whit_image_floats(b),
-                        (size_t)params->width * params->height * 4 * sizeof(float));
+    own_whit_image *b = drawn_by(other), *a = drawn_by(renderer);
+    assert_same_image(a, b);
     whit_renderer_get_stats(renderer, &stats);
     whit_renderer_get_stats(other, &stats_usual);
     assert_int_equal(stats.rays_reflected, stats_usual.rays_reflected);
@@ -196,18 +190,13 @@ static void count_call(void *user, double done)
     ++*(uint32_t *)user;
 }
 
-/* Draws a picture with the same renderer. Gives whether it traced rays. */
+/* Draws a picture with the same renderer in place of *out. Gives whether it traced rays. */
 static bool draw_in_place(whit_renderer *renderer, const uint32_t *calls, whit_image **out)
 {
     uint32_t before = *calls;
-    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    *out = image_of(renderer, WHIT_AOV_COLOR);
+    whit_image_destroy(*out);
+    *out = drawn_by(renderer);
     return *calls > before;
-}
-
-static void assert_same(const whit_image *a, const whit_image *b)
-{
-    assert_memory_equal(whit_image_floats(a), whit_image_floats(b), PIXELS * 4 * sizeof(float));
 }
 
 /* Each version in the same renderer draws the picture of a new renderer, with its own sliders. */
@@ -215,15 +204,14 @@ static void draw_versions(const char *const *versions, const bool *traces, size_
 {
     uint32_t calls = 0, kernels;
     uint64_t compiled;
-    whit_shader *before = hooks_load(versions[0]);
+    own_whit_shader *before = hooks_load(versions[0]);
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, before);
-    whit_image *in_place;
+    own_whit_image *in_place = NULL;
     params.reuse_rays = true;
     params.progress = count_call;
     params.progress_user = &calls;
-    whit_renderer *renderer = renderer_of(&params);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_true(draw_in_place(renderer, &calls, &in_place));
-    whit_image_destroy(in_place);
     for (size_t i = 1; i < count; ++i) {
         whit_shader *shader = hooks_load(versions[i]);
         params.shader = shader;
@@ -232,13 +220,9 @@ static void draw_versions(const char *const *versions, const bool *traces, size_
         before = shader;
         if (draw_in_place(renderer, &calls, &in_place) != traces[i])
             fail_msg("%s", versions[i]);
-        whit_image *alone = draw(shader, 0, &compiled, &kernels);
-        assert_same(in_place, alone);
-        whit_image_destroy(in_place);
-        whit_image_destroy(alone);
+        own_whit_image *alone = draw(shader, 0, &compiled, &kernels);
+        assert_same_image(in_place, alone);
     }
-    whit_renderer_destroy(renderer);
-    whit_shader_destroy(before);
 }
 
 #define POST(value)   "vec3 post(ivec2 at, vec3 c) { return " value "; }\n"
@@ -285,35 +269,28 @@ TEST_BY_TURNS(another_post_beside_other_functions_needs_no_rays, 1, 2)
 TEST_BY_TURNS(rays_are_taken_again_for_the_same_view, 0, 2)
 {
     uint32_t calls = 0;
-    whit_shader *shader = hooks_load(POST("c.bgr"));
+    own_whit_shader *shader = hooks_load(POST("c.bgr"));
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
-    whit_image *first, *again;
+    own_whit_image *first = NULL, *again = NULL;
     params.progress = count_call;
     params.progress_user = &calls;
-    whit_renderer *renderer = renderer_of(&params);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_true(draw_in_place(renderer, &calls, &first));
     assert_true(draw_in_place(renderer, &calls, &again));
-    assert_same(first, again);
-    whit_image_destroy(again);
+    assert_same_image(first, again);
     params.reuse_rays = true;
     assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
     assert_false(draw_in_place(renderer, &calls, &again));
-    assert_same(first, again);
-    whit_image_destroy(again);
+    assert_same_image(first, again);
     params.sampling.first = 1;
     assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
     assert_true(draw_in_place(renderer, &calls, &again));
-    whit_image_destroy(again);
     params.sampling.first = 0;
     params.depth = 0;
     assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
     assert_true(draw_in_place(renderer, &calls, &again));
     assert_memory_not_equal(whit_image_floats(first), whit_image_floats(again),
                             PIXELS * 4 * sizeof(float));
-    whit_image_destroy(again);
-    whit_image_destroy(first);
-    whit_renderer_destroy(renderer);
-    whit_shader_destroy(shader);
 }
 
 enum { CALLS_BEFORE_STOP = 3 };
@@ -360,19 +337,15 @@ static bool traces_behind_cancelled(uint32_t samples, whit_shader *const shaders
    picture is still valid; sums of several samples are incomplete then. */
 TEST_BY_TURNS(another_post_behind_a_cancelled_picture_needs_no_rays, 1, 2)
 {
-    whit_shader *const shaders[2] = {hooks_load(POST("c")), hooks_load(POST("c.bgr"))};
-    whit_image *in_place, *alone;
+    own_whit_shader *before = hooks_load(POST("c")), *behind = hooks_load(POST("c.bgr"));
+    whit_shader *const shaders[2] = {before, behind};
+    own_whit_image *in_place = NULL;
     uint64_t compiled;
     uint32_t kernels;
     assert_false(traces_behind_cancelled(1, shaders, &in_place));
-    alone = draw(shaders[1], 0, &compiled, &kernels);
-    assert_same(in_place, alone);
-    whit_image_destroy(alone);
-    whit_image_destroy(in_place);
+    own_whit_image *alone = draw(behind, 0, &compiled, &kernels);
+    assert_same_image(in_place, alone);
     assert_true(traces_behind_cancelled(4, shaders, &in_place));
-    whit_image_destroy(in_place);
-    whit_shader_destroy(shaders[0]);
-    whit_shader_destroy(shaders[1]);
 }
 
 /* The picture without the shader, with which expectations compare, has shadow rays although the

@@ -30,7 +30,7 @@ static const char real_ball[] = "{\"shape\":\"ball\",\"radius\":0.7,"
 #define GIVE       "    return dot(aside, aside) < 0.49 && t >= 0.0;\n}\n"
 #define SHAPE_TEXT BOX INTERSECT MEET GIVE
 
-/* The room with `part` in it; destroyed by scene_close(). */
+/* The room with `part` in it. */
 static void open_room(const char *part)
 {
     char path[] = "/tmp/whit_room_XXXXXX.json";
@@ -50,7 +50,7 @@ struct picture {
 static whit_result draw(const char *part, const whit_shader *shader, whit_numerics numerics,
                         struct picture *out)
 {
-    whit_renderer *renderer = NULL;
+    own_whit_renderer *renderer = NULL;
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
     open_room(part);
     params.numerics = numerics;
@@ -64,8 +64,6 @@ static whit_result draw(const char *part, const whit_shader *shader, whit_numeri
         memcpy(out->color, whit_image_floats(color), sizeof out->color);
         memcpy(out->ids, whit_image_words(ids), sizeof out->ids);
     }
-    whit_renderer_destroy(renderer);
-    scene_close();
     return result;
 }
 
@@ -107,13 +105,11 @@ TEST_BY_TURNS(probe_of_the_shape_differs_nowhere, 0, 2)
     whit_probe_report *report;
     open_room("");
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
-    whit_renderer *renderer = renderer_of(&params);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_probe(renderer, WIDTH / 2, HEIGHT / 2, 0, &report), WHIT_OK);
     assert_int_equal(report->rays[0].device.instance, WHIT_INSTANCE_SHAPE);
     assert_true(report->ray_count > 2 && report->differing == 0);
     whit_probe_report_destroy(report);
-    whit_renderer_destroy(renderer);
-    scene_close();
 }
 
 /* Rays that the user's other functions trace hit the shape, and its loops have their own fuel. */

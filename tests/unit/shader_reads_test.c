@@ -117,13 +117,11 @@ TEST(what_is_not_read_is_not_compiled)
         char path[512];
         snprintf(path, sizeof path, "%s%s", WHIT_SCENES_DIR, cases[i].scene);
         if (strcmp(opened, cases[i].scene) != 0) {
-            scene_close();
             scene_open(path);
             opened = cases[i].scene;
         }
         check(cases[i].content, cases[i].removed, cases[i].read);
     }
-    scene_close();
 }
 
 /* Instructions of the kernel of surface() and shade(). */
@@ -162,11 +160,9 @@ TEST(the_kernel_of_functions_has_what_they_read)
             own_whit_image *usual = draw(&params, &compiled);
             params.all_effects = true;
             own_whit_image *whole = draw(&params, &compiled);
-            assert_memory_equal(whit_image_floats(usual), whit_image_floats(whole),
-                                WIDTH * HEIGHT * 4 * sizeof(float));
+            assert_same_image(usual, whole);
         }
     }
-    scene_close();
 }
 
 /* A renderer with keep_unread takes a version that reads more; another one must be made anew. */
@@ -182,7 +178,6 @@ TEST(another_version_may_read_more)
         assert_int_equal(whit_renderer_takes_shader(renderer, smooth), keeps_all);
         assert_true(whit_renderer_takes_shader(renderer, flat));
     }
-    scene_close();
 }
 
 TESTS_IN(hooks_begin, hooks_end)

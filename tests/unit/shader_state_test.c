@@ -130,8 +130,7 @@ TEST_IN(surface_that_changes_nothing_changes_no_bit, begin, hooks_end)
 {
     const whit_renderer_params params = params_sized(WIDTH, HEIGHT, NULL);
     own_whit_renderer *renderer = renderer_of(&params);
-    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    own_whit_image *image = image_of(renderer, WHIT_AOV_COLOR);
+    own_whit_image *image = drawn_by(renderer);
     draw("void surface(inout Surface s) {}\n", pixels);
     assert_memory_equal(whit_image_floats(image), pixels, sizeof pixels);
 }
