@@ -292,7 +292,7 @@ static struct scene *two_objects(const struct affine *place)
 static void takes_one_tree(const char *what, struct scene *scene, uint64_t memory_limit,
                            bool expected)
 {
-    struct scene_pose pose;
+    own_pose pose;
     bool suits;
     scene_ready(scene);
     scene->memory_limit = memory_limit;
@@ -300,7 +300,6 @@ static void takes_one_tree(const char *what, struct scene *scene, uint64_t memor
     assert_int_equal(accel_flat_suits(scene, &pose, &suits), WHIT_OK);
     if (suits != expected)
         fail_msg("%s: %s", what, suits ? "takes one tree" : "keeps its instances");
-    scene_pose_finish(&pose);
     scene_destroy(scene);
 }
 

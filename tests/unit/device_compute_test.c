@@ -31,7 +31,7 @@ static struct pipeline_info check_constants(const uint32_t spec[3], uint32_t add
     own_buffer *buffer =
         buffer_make(device, 4 * COUNT + 4, BUFFER_STORAGE | BUFFER_ZEROED, "values");
     struct pipeline_params params = affine_params(spec);
-    struct kernel_run run = kernel_make(device, &params, &buffer);
+    own_kernel run = kernel_make(device, &params, &buffer);
     struct pipeline_info info;
     const uint32_t push[] = {COUNT, added};
     uint32_t values[COUNT + 1];
@@ -41,7 +41,6 @@ static struct pipeline_info check_constants(const uint32_t spec[3], uint32_t add
         assert_int_equal(values[j], j * spec[1] + spec[2] + added);
     assert_int_equal(values[COUNT], 0);
     pipeline_get_info(run.pipeline, &info);
-    kernel_free(&run);
     return info;
 }
 
@@ -67,11 +66,9 @@ TEST_IN(kernels_go_to_the_driver_whole, NULL, specialize_again)
     struct pipeline_info info;
     messages = (struct messages){0};
     cannot_specialize = true;
-    struct buffer *buffer = buffer_make(device, 4, BUFFER_STORAGE, "values");
-    struct kernel_run run = kernel_make(device, &params, &buffer);
+    own_buffer *buffer = buffer_make(device, 4, BUFFER_STORAGE, "values");
+    own_kernel run = kernel_make(device, &params, &buffer);
     pipeline_get_info(run.pipeline, &info);
-    kernel_free(&run);
-    buffer_destroy(buffer);
     assert_non_null(strstr(messages.text, "\"affine\": its kernel cannot be specialized"));
     assert_int_equal(messages.errors, 0);
     assert_false(info.specialized);
@@ -83,14 +80,12 @@ TEST_IN(kernels_go_to_the_driver_whole, NULL, specialize_again)
 TEST(texels_equal_storage)
 {
     enum { ROWS = 4096 };
-    uint32_t(*rows)[4] = malloc(ROWS * sizeof *rows), (*sums)[4] = malloc(ROWS * sizeof *sums);
-    assert_true(rows && sums);
+    static uint32_t rows[ROWS][4], sums[ROWS][4];
     for (uint32_t i = 0; i < 4 * ROWS; ++i)
         rows[i / 4][i % 4] = i * 2654435761u; /* all bit patterns, also of NaNs */
-    own_buffer *in =
-        buffer_make(device, ROWS * sizeof *rows, BUFFER_STORAGE | BUFFER_TEXELS, "rows");
-    own_buffer *out = buffer_make(device, ROWS * sizeof *sums, BUFFER_STORAGE, "sums");
-    assert_int_equal(buffer_write(in, 0, rows, ROWS * sizeof *rows), WHIT_OK);
+    own_buffer *in = buffer_make(device, sizeof rows, BUFFER_STORAGE | BUFFER_TEXELS, "rows");
+    own_buffer *out = buffer_make(device, sizeof sums, BUFFER_STORAGE, "sums");
+    assert_int_equal(buffer_write(in, 0, rows, sizeof rows), WHIT_OK);
 
     const enum binding_kind bindings[] = {BINDING_STORAGE, BINDING_NONE, BINDING_TEXELS,
                                           BINDING_STORAGE};
@@ -100,14 +95,11 @@ TEST(texels_equal_storage)
                                      .bindings = bindings,
                                      .binding_count = 4,
                                      .name = "texels"};
-    struct kernel_run run = kernel_make(device, &params, buffers);
+    own_kernel run = kernel_make(device, &params, buffers);
     kernel_dispatch(device, &run, NULL, 0, ROWS / 64);
-    assert_int_equal(buffer_read(out, 0, sums, ROWS * sizeof *sums), WHIT_OK);
+    assert_int_equal(buffer_read(out, 0, sums, sizeof sums), WHIT_OK);
     for (uint32_t i = 0; i < 4 * ROWS; ++i)
         assert_int_equal(sums[i / 4][i % 4], rows[i / 4][i % 4] * 2 + 1);
-    kernel_free(&run);
-    free(rows);
-    free(sums);
 }
 
 static struct pipeline_params count_params(void)
@@ -133,8 +125,8 @@ TEST(indirect_dispatch_takes_its_arguments)
 {
     own_buffer *count = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
     own_buffer *arguments = buffer_make(device, 64, BUFFER_INDIRECT, "arguments");
-    struct kernel_run run = count_make(count);
-    struct commands *commands = commands_make(device);
+    own_kernel run = count_make(count);
+    own_commands *commands = commands_make(device);
     assert_int_equal(commands_begin(commands), WHIT_OK);
     commands_fill(commands, arguments, 16, 12, 3);
     commands_barrier(commands);
@@ -144,15 +136,13 @@ TEST(indirect_dispatch_takes_its_arguments)
     commands_dispatch_indirect(commands, arguments, 16);
     commands_finish(commands);
     assert_int_equal(read_word(count, 0), 5 * 3 * 3);
-    commands_destroy(commands);
-    kernel_free(&run);
 }
 
 TEST(fill_and_copy_keep_to_their_range)
 {
     own_buffer *a = buffer_make(device, 64, BUFFER_STORAGE | BUFFER_ZEROED, "a");
     own_buffer *b = buffer_make(device, 64, BUFFER_HOST | BUFFER_ZEROED, "b");
-    struct commands *commands = commands_make(device);
+    own_commands *commands = commands_make(device);
     assert_int_equal(commands_begin(commands), WHIT_OK);
     commands_fill(commands, a, 8, 16, 0x12345678u);
     commands_barrier(commands);
@@ -165,7 +155,6 @@ TEST(fill_and_copy_keep_to_their_range)
     assert_int_equal(buffer_read(b, 0, words, sizeof words), WHIT_OK);
     for (size_t i = 0; i < 16; ++i)
         assert_int_equal(words[i], i >= 9 && i < 12 ? 0x12345678u : 0);
-    commands_destroy(commands);
 }
 
 static struct kernel_run spin_make(struct buffer *buffer)
@@ -214,8 +203,8 @@ static void time_two_spans(struct commands *commands, const struct kernel_run *r
 TEST(spans_are_timed)
 {
     own_buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
-    struct kernel_run run = spin_make(buffer);
-    struct commands *commands = commands_make(device);
+    own_kernel run = spin_make(buffer);
+    own_commands *commands = commands_make(device);
     assert_int_equal(commands_span_count(commands), 0);
     assert_true(commands_span_ms(commands, 0) < 0.0);
     assert_int_equal(commands_begin(commands), WHIT_OK);
@@ -242,8 +231,6 @@ TEST(spans_are_timed)
     }
     commands_finish(commands);
     assert_int_equal(commands_span_count(commands), COMMANDS_SPANS);
-    commands_destroy(commands);
-    kernel_free(&run);
 }
 
 /* Stands for a device that does not finish its work (-Wl,--wrap): waiting for it times out. */
@@ -260,8 +247,8 @@ WRAPPED(VkResult, vkWaitForFences, VkDevice vk, uint32_t count, const VkFence *f
 TEST(wait_obeys_its_limit)
 {
     own_buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
-    struct kernel_run run = spin_make(buffer);
-    struct commands *commands = commands_make(device);
+    own_kernel run = spin_make(buffer);
+    own_commands *commands = commands_make(device);
     assert_int_equal(commands_wait(commands, 0.0), WHIT_OK); /* nothing to wait for */
     assert_int_equal(commands_begin(commands), WHIT_OK);
     spin(commands, &run, 1);
@@ -277,16 +264,14 @@ TEST(wait_obeys_its_limit)
     assert_int_equal(limit_ns, UINT64_MAX);
     assert_int_equal(commands_begin(commands), WHIT_OK);
     spin(commands, &run, 64);
-    assert_int_equal(commands_submit(commands), WHIT_OK);
-    commands_destroy(commands); /* in flight: waits */
-    kernel_free(&run);
+    assert_int_equal(commands_submit(commands), WHIT_OK); /* its destruction waits */
 }
 
 TEST(recording_errors_surface_at_submit)
 {
     own_buffer *buffer = buffer_make(device, 256, BUFFER_STORAGE | BUFFER_ZEROED, "values");
-    struct kernel_run run = count_make(buffer);
-    struct commands *commands = commands_make(device);
+    own_kernel run = count_make(buffer);
+    own_commands *commands = commands_make(device);
     const uint32_t word = 0;
     for (int fault = 0; fault < 9; ++fault) {
         messages = (struct messages){0};
@@ -339,14 +324,12 @@ TEST(recording_errors_surface_at_submit)
     commands_dispatch(commands, 7, 1, 1);
     commands_finish(commands);
     assert_int_equal(read_word(buffer, 0), 7);
-    commands_destroy(commands);
-    kernel_free(&run);
 }
 
 TEST(later_submissions_see_earlier_ones)
 {
     own_buffer *buffer = buffer_make(device, 16, BUFFER_STORAGE | BUFFER_ZEROED, "count");
-    struct kernel_run run = count_make(buffer);
+    own_kernel run = count_make(buffer);
     struct commands *commands[2] = {commands_make(device), commands_make(device)};
     for (int i = 0; i < 20; ++i) {
         struct commands *one = commands[i & 1];
@@ -361,7 +344,6 @@ TEST(later_submissions_see_earlier_ones)
         commands_destroy(commands[i]);
     }
     assert_int_equal(read_word(buffer, 0), 200);
-    kernel_free(&run);
 }
 
 TEST(refuses_wrong_pipelines_and_sets)

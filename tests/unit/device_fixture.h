@@ -69,6 +69,9 @@ static inline void kernel_free(struct kernel_run *run)
     pipeline_destroy(run->pipeline);
 }
 
+/* Freed at the end of its block, where its buffers must still exist: own_kernel run = ...; */
+#define own_kernel __attribute__((cleanup(kernel_free))) struct kernel_run
+
 static inline void drop_buffer(struct buffer **at)
 {
     buffer_destroy(*at);
@@ -93,6 +96,14 @@ static inline struct commands *commands_make(struct device *device)
     return commands;
 }
 
+static inline void drop_commands(struct commands **at)
+{
+    commands_destroy(*at);
+}
+
+/* Waited for and freed at the end of its block, where its kernels must still exist. */
+#define own_commands __attribute__((cleanup(drop_commands))) struct commands
+
 static inline void commands_finish(struct commands *commands)
 {
     assert_int_equal(commands_submit(commands), WHIT_OK);
@@ -103,14 +114,13 @@ static inline void commands_finish(struct commands *commands)
 static inline void kernel_dispatch(struct device *device, const struct kernel_run *run,
                                    const void *push, uint32_t push_bytes, uint32_t groups)
 {
-    struct commands *commands = commands_make(device);
+    own_commands *commands = commands_make(device);
     assert_int_equal(commands_begin(commands), WHIT_OK);
     commands_bind(commands, run->pipeline, run->set);
     if (push_bytes > 0)
         commands_push(commands, push, push_bytes);
     commands_dispatch(commands, groups, 1, 1);
     commands_finish(commands);
-    commands_destroy(commands);
 }
 
 /* Runs a kernel that reads `count` cases from its first buffer and writes an answer for each to its
@@ -126,10 +136,9 @@ static inline void kernel_answer_as(struct device *device, const uint32_t *spec,
     struct pipeline_params params = storage_params(spirv, spirv_bytes, 2, "answers");
     params.spec = spec;
     params.spec_count = spec_count;
-    struct kernel_run run = kernel_make(device, &params, (struct buffer *const[]){in, out});
+    own_kernel run = kernel_make(device, &params, (struct buffer *const[]){in, out});
     kernel_dispatch(device, &run, NULL, 0, (count + 63) / 64);
     assert_int_equal(buffer_read(out, 0, answers, count * answer_bytes), WHIT_OK);
-    kernel_free(&run);
 }
 
 static inline void kernel_answer(struct device *device, const uint32_t *spirv, size_t spirv_bytes,

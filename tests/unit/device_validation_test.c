@@ -12,8 +12,8 @@ static void run_affine(struct device *device, bool with_barrier)
     own_buffer *values = buffer_make(device, 256, BUFFER_STORAGE, "values");
     own_buffer *copy = buffer_make(device, 256, BUFFER_HOST, "copy");
     struct pipeline_params params = affine_params(spec);
-    struct kernel_run run = kernel_make(device, &params, &values);
-    struct commands *commands = commands_make(device);
+    own_kernel run = kernel_make(device, &params, &values);
+    own_commands *commands = commands_make(device);
     assert_int_equal(commands_begin(commands), WHIT_OK);
     commands_span_begin(commands, "affine");
     commands_bind(commands, run.pipeline, run.set);
@@ -28,8 +28,6 @@ static void run_affine(struct device *device, bool with_barrier)
     assert_int_equal(buffer_read(copy, 4 * 63, &word, sizeof word), WHIT_OK);
     if (with_barrier)
         assert_int_equal(word, 63);
-    commands_destroy(commands);
-    kernel_free(&run);
 }
 
 TEST(normal_use_is_silent)

@@ -15,8 +15,10 @@ static const whit_text recipe[] = {{"scene", "scenes/default.json"},
                                    {"note", "\xc3\xbc 5\xc2\xb0"}};
 enum { RECIPE_COUNT = sizeof recipe / sizeof *recipe };
 
+/* Puts the picture that is read again in place of *loaded. */
 static void save_and_load(const char *name, const struct image *image, struct image *loaded)
 {
+    image_finish(loaded);
     char *path = in_folder(name);
     assert_int_equal(image_save(&warnings_log, image, NULL, 0, path, recipe, RECIPE_COUNT),
                      WHIT_OK);
@@ -31,17 +33,14 @@ TEST_IN(floats_keep_every_bit, folder_begin, folder_end)
         for (uint32_t channels = 1; channels <= 4; ++channels) {
             if (channels == 2)
                 continue;
-            struct image image = fixture_floats(sizes[i][0], sizes[i][1], channels), loaded;
+            own_image image = fixture_floats(sizes[i][0], sizes[i][1], channels), loaded = {0};
             image.pixels[0] = NAN;
             save_and_load("a.exr", &image, &loaded);
             assert_images_equal(&image, &loaded);
-            image_finish(&loaded);
             if (channels != 4) {
                 save_and_load("a.pfm", &image, &loaded);
                 assert_images_equal(&image, &loaded);
-                image_finish(&loaded);
             }
-            image_finish(&image);
         }
     }
 }
@@ -57,22 +56,18 @@ TEST_IN(integers_keep_every_bit, folder_begin, folder_end)
 
 TEST_IN(pfm_is_bottom_up_little_endian, folder_begin, folder_end)
 {
-    struct image image = fixture_flat(1, 2, 1, 1.0f), loaded;
+    own_image image = fixture_flat(1, 2, 1, 1.0f), loaded = {0}, other = {0};
     image.pixels[1] = -2.0f;
     save_and_load("a.pfm", &image, &loaded);
-    image_finish(&loaded);
-    uint8_t *data;
+    own_memory uint8_t *data = NULL;
     size_t size_bytes;
     char *path = in_folder("a.pfm");
     assert_int_equal(file_read(NULL, NULL, path, 0, &data, &size_bytes), WHIT_OK);
     assert_int_equal(size_bytes, 20);
     assert_memory_equal(data, "Pf\n1 2\n-1.0\n\0\0\0\xc0\0\0\x80\x3f", 20);
-    free(data);
     fixture_put(path, "Pf 1 2 2.5 \xc0\0\0\0\x3f\x80\0\0", 19);
-    assert_int_equal(image_load(&warnings_log, NULL, path, NULL, &loaded), WHIT_OK);
-    assert_images_equal(&image, &loaded);
-    image_finish(&loaded);
-    image_finish(&image);
+    assert_int_equal(image_load(&warnings_log, NULL, path, NULL, &other), WHIT_OK);
+    assert_images_equal(&image, &other);
 }
 
 /* The nearest 8-bit sRGB code, by the formula in double. */
@@ -121,7 +116,7 @@ TEST_IN(nonfinite_is_magenta_and_counted, folder_begin, folder_end)
     for (uint32_t channels = 1; channels <= 4; ++channels) {
         if (channels == 2)
             continue;
-        struct image image = fixture_floats(8, 8, channels), loaded;
+        own_image image = fixture_floats(8, 8, channels), loaded = {0};
         image.pixels[5 * channels] = INFINITY;
         image.pixels[9 * channels + channels - 1] = NAN;
         messages.warnings = 0;
@@ -134,12 +129,9 @@ TEST_IN(nonfinite_is_magenta_and_counted, folder_begin, folder_end)
         assert_memory_equal(loaded.pixels + 5 * loaded.channels, magenta, bytes);
         assert_memory_equal(loaded.pixels + 9 * loaded.channels, magenta, bytes);
         assert_memory_not_equal(loaded.pixels + 6 * loaded.channels, magenta, bytes);
-        image_finish(&loaded);
         messages.warnings = 0;
         save_and_load("a.exr", &image, &loaded);
         assert_int_equal(messages.warnings, 1);
-        image_finish(&loaded);
-        image_finish(&image);
     }
 }
 
@@ -414,8 +406,8 @@ static void exr_read_layer(const char *path, const char *name, struct image *out
 TEST_IN(exr_keeps_layers_beside_the_colour, folder_begin, folder_end)
 {
     char *path = in_folder("layers.exr");
-    struct image color = fixture_floats(45, 37, 4), other = fixture_floats(45, 37, 4),
-                 third = fixture_floats(45, 37, 4), small = fixture_floats(4, 4, 4), loaded;
+    own_image color = fixture_floats(45, 37, 4), other = fixture_floats(45, 37, 4);
+    own_image third = fixture_floats(45, 37, 4), small = fixture_floats(4, 4, 4), loaded = {0};
     for (size_t i = 0; i < (size_t)45 * 37 * 4; ++i) {
         other.pixels[i] = (float)i - 7.25f;
         third.pixels[i] = -1e-30f * (float)i;
@@ -440,9 +432,6 @@ TEST_IN(exr_keeps_layers_beside_the_colour, folder_begin, folder_end)
                          WHIT_ERROR_USAGE);
         assert_non_null(strstr(messages.last_error, "names have 1 to 200 bytes and no dots"));
     }
-    struct image *all[] = {&color, &other, &third, &small, &loaded};
-    for (int i = 0; i < 5; ++i)
-        image_finish(all[i]);
 }
 
 TEST_IN(exr_kinds_are_read, folder_begin, folder_end)
@@ -451,19 +440,18 @@ TEST_IN(exr_kinds_are_read, folder_begin, folder_end)
                                                      EXR_COMPRESSION_ZIPS, EXR_COMPRESSION_ZIP,
                                                      EXR_COMPRESSION_PIZ};
     char *path = in_folder("a.exr");
-    struct image image = fixture_floats(45, 37, 3), loaded;
+    own_image image = fixture_floats(45, 37, 3);
     for (size_t i = 0; i < (size_t)45 * 37 * 3; ++i)
         image.pixels[i] = roundf(image.pixels[i] * 1024.0f) / 1024.0f; /* a half holds these */
     for (int kind = 0; kind < 4; ++kind) {
         for (int c = 0; c < 5; ++c) {
             exr_write_raw(path, &image, kind & 1, kind & 2, compressions[c]);
+            own_image loaded = {0};
             assert_int_equal(image_load(&warnings_log, NULL, path, NULL, &loaded), WHIT_OK);
             assert_images_equal(&image, &loaded);
-            image_finish(&loaded);
         }
     }
     assert_int_equal(messages.errors, 0);
-    image_finish(&image);
 }
 
 TEST_IN(hdr_rows_of_all_kinds, folder_begin, folder_end)

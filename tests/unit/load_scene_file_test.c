@@ -201,7 +201,7 @@ TEST_IN(shapes_are_placed, folder_begin, folder_end)
         "{\"objects\":[{\"shape\":\"box\",\"size\":[1,2,3],\"translation\":[5,0,0],"
         "\"rotation\":[0,90,0],\"scale\":2,\"children\":[{\"shape\":\"sphere\",\"segments\":8,"
         "\"rings\":4,\"translation\":[0,0,1]}]}]}");
-    struct scene_pose pose;
+    own_pose pose;
     assert_int_equal(scene->mesh_count, 2);
     assert_int_equal(scene->meshes[0].triangle_count, 12);
     assert_int_equal(scene->meshes[1].triangle_count, 2 * 8 * 3);
@@ -209,7 +209,6 @@ TEST_IN(shapes_are_placed, folder_begin, folder_end)
     /* A quarter turn about y takes z to x: the child sits at 5 + 2 * 1. */
     assert_true(fabs(pose.instances[1].m[3] - 7.0) < 1e-12);
     assert_true(fabs(pose.instances[1].m[11]) < 1e-12);
-    scene_pose_finish(&pose);
 }
 
 TEST_IN(equal_shapes_share_a_mesh, folder_begin, folder_end)
@@ -228,7 +227,7 @@ TEST_IN(repeat_places_copies_around, folder_begin, folder_end)
     own_scene *scene =
         load_fine("{\"objects\":[{\"translation\":[0,7,0],\"repeat\":{\"count\":[3,1,2],"
                   "\"step\":[10,0,4]},\"children\":[{\"shape\":\"box\"},{\"shape\":\"cone\"}]}]}");
-    struct scene_pose pose;
+    own_pose pose;
     double min_x = 1e9, max_x = -1e9, max_z = -1e9;
     assert_int_equal(scene->instance_count, 12);
     assert_int_equal(scene->mesh_count, 2);
@@ -240,7 +239,6 @@ TEST_IN(repeat_places_copies_around, folder_begin, folder_end)
         assert_true(pose.instances[i].m[7] == 7.0);
     }
     assert_true(min_x == -10.0 && max_x == 10.0 && max_z == 2.0);
-    scene_pose_finish(&pose);
 }
 
 TEST_IN(repeated_animation_moves_every_copy, folder_begin, folder_end)
@@ -248,12 +246,11 @@ TEST_IN(repeated_animation_moves_every_copy, folder_begin, folder_end)
     own_scene *scene = load_fine(
         "{\"objects\":[{\"shape\":\"box\",\"repeat\":{\"count\":[4,1,1],\"step\":[3,0,0]},"
         "\"animation\":{\"translation\":{\"times\":[0,2],\"values\":[[0,0,0],[0,8,0]]}}}]}");
-    struct scene_pose pose;
+    own_pose pose;
     assert_int_equal(scene->channel_count, 4);
     assert_int_equal(scene_pose_init(scene, 1.0, &pose), WHIT_OK);
     for (uint32_t i = 0; i < 4; ++i)
         assert_true(fabs(pose.instances[i].m[7] - 4.0) < 1e-6);
-    scene_pose_finish(&pose);
 }
 
 TEST_IN(sphereflake_is_instances, folder_begin, folder_end)
@@ -261,13 +258,12 @@ TEST_IN(sphereflake_is_instances, folder_begin, folder_end)
     own_scene *scene =
         load_fine("{\"objects\":[{\"shape\":\"sphereflake\",\"level\":2,\"segments\":8,"
                   "\"rings\":4,\"radius\":2}]}");
-    struct scene_pose pose;
+    own_pose pose;
     assert_int_equal(scene->mesh_count, 1);
     assert_int_equal(scene->instance_count, 91);
     assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
     assert_true(pose.instances[0].m[0] == 2.0);
     assert_true(fabs(pose.instances[90].m[0]) < 0.3);
-    scene_pose_finish(&pose);
 }
 
 /* "ball" and "spheres" are sphere primitives; equal balls share a mesh, each list has its own

@@ -372,7 +372,7 @@ TEST(cameras_are_those_of_kernels)
             .width = 13, .height = 9, .depth = 8, .sampling.count = 4};
         struct drawn d = open_reference(scene, &picture);
         struct gpu_frame frame;
-        struct scene_pose pose;
+        own_pose pose;
         uint32_t kind;
         assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
         assert_int_equal(media_view(&fixture_log, d.accel, &pose, &(whit_camera){.name = NULL}, 13,
@@ -390,7 +390,6 @@ TEST(cameras_are_those_of_kernels)
             }
             free(rays.all);
         }
-        scene_pose_finish(&pose);
         close_reference(&d);
     }
 }

@@ -23,13 +23,12 @@ static void put_glass(struct scene *scene, struct scene_mesh mesh, const char *n
 
 static bool come_within(const struct scene *scene, double distance)
 {
-    struct scene_pose pose;
+    own_pose pose;
     struct bodies bodies = {0};
     assert_int_equal(scene_pose_init(scene, 0.0, &pose), WHIT_OK);
     assert_true(bodies_list(scene, &pose, &bodies));
     bool within = bodies_come_within(scene, &pose, &bodies, distance);
     bodies_finish(&bodies);
-    scene_pose_finish(&pose);
     return within;
 }
 

@@ -140,7 +140,7 @@ static struct scene *integer_ring(void)
    has different origins, and in every fifth one ray has another interval. */
 static void aim_packets(const struct fixture *f, struct gpu_ray *rays, uint32_t count)
 {
-    struct scene_pose pose;
+    own_pose pose;
     uint64_t random = 17;
     double target[3], middle[3] = {0}, way[3];
     assert_int_equal(scene_pose_init(f->scene, 0.0, &pose), WHIT_OK);
@@ -166,7 +166,6 @@ static void aim_packets(const struct fixture *f, struct gpu_ray *rays, uint32_t 
         if (packet % 5 == 4 && i % 64 == 9)
             rays[i].t_min = 0.25f;
     }
-    scene_pose_finish(&pose);
 }
 
 static void check_packets(struct scene *scene, const whit_accel_params *params, const char *label)

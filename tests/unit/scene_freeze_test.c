@@ -283,7 +283,7 @@ static struct scene *panel_scene(float radiance, uint32_t steps)
 TEST(tessellated_lamps_become_points)
 {
     own_scene *scene = panel_scene(10.0f, 6);
-    struct scene_pose pose;
+    own_pose pose;
     assert_int_equal(scene_pose_init(scene_ready(scene), 0.0, &pose), WHIT_OK);
     assert_int_equal(pose.light_count, 16);
     double sum = 0.0, mean_x = 0.0;
@@ -299,7 +299,6 @@ TEST(tessellated_lamps_become_points)
     assert_true(fabs(sum - 10.0 * 6.0 / 3.14159265358979) < 1e-4);
     assert_true(fabs(mean_x) < 0.3);
     assert_true(scene->ambient[0] == 0.03f);
-    scene_pose_finish(&pose);
 }
 
 TEST(lamps_light_by_their_opacity)
@@ -325,7 +324,7 @@ TEST(lamps_light_by_their_opacity)
 TEST(flat_lamps_become_rectangles)
 {
     own_scene *scene = panel_scene(10.0f, 1);
-    struct scene_pose pose;
+    own_pose pose;
     assert_int_equal(scene_pose_init(scene_ready(scene), 0.0, &pose), WHIT_OK);
     assert_int_equal(pose.light_count, 1);
     const struct scene_light *light = &pose.lights[0];
@@ -338,7 +337,6 @@ TEST(flat_lamps_become_rectangles)
     assert_true(fabs(p[0] + u[0] + v[0] + p[0]) < 1e-9 && fabs(p[2] + u[2] + v[2] + p[2]) < 1e-9);
     assert_true(fabs(p[1] - 5.0) < 1e-9 && fabs(u[1]) + fabs(v[1]) < 1e-9);
     assert_true(u[2] * v[0] - u[0] * v[2] > 5.999);
-    scene_pose_finish(&pose);
 }
 
 /* Two triangles that form no parallelogram each become a light; they shine upwards also in a
@@ -346,7 +344,7 @@ TEST(flat_lamps_become_rectangles)
 TEST(single_triangles_become_lights)
 {
     own_scene *scene = panel_scene(10.0f, 1);
-    struct scene_pose pose;
+    own_pose pose;
     scene->meshes[1].positions[0] *= 1.5f;
     scene->nodes[scene->node_count - 1].scale[0] = -3.0;
     assert_int_equal(scene_pose_init(scene_ready(scene), 0.0, &pose), WHIT_OK);
@@ -358,7 +356,6 @@ TEST(single_triangles_become_lights)
         assert_true(light->direction[1] > 0.999);
         assert_true(u[2] * v[0] - u[0] * v[2] > 2.0);
     }
-    scene_pose_finish(&pose);
 }
 
 TEST(faint_glow_lights_nothing)

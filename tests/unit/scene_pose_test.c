@@ -42,10 +42,9 @@ static struct scene *moving_scene(enum scene_path path, enum scene_interpolation
 
 static struct affine matrix_at(const struct scene *scene, double time_s)
 {
-    struct scene_pose pose;
+    own_pose pose;
     assert_int_equal(scene_pose_init(scene, time_s, &pose), WHIT_OK);
     struct affine matrix = pose.instances[0];
-    scene_pose_finish(&pose);
     return matrix;
 }
 
@@ -193,7 +192,7 @@ TEST(lights_cameras_and_bounds_follow_their_nodes)
     scene_add_camera(
         scene, (struct scene_camera){.node = 1, .eye = {0, 0, 5}, .up = {0, 1, 0}, .fov_y = 1.0f});
     assert_int_equal(scene_freeze(scene), WHIT_OK);
-    struct scene_pose pose;
+    own_pose pose;
     assert_int_equal(scene_pose_init(scene, 0.5, &pose), WHIT_OK);
     const struct scene_light *light = &pose.lights[pose.light_count - 1];
     const struct scene_camera *camera = &pose.cameras[pose.camera_count - 1];
@@ -203,7 +202,6 @@ TEST(lights_cameras_and_bounds_follow_their_nodes)
     assert_near(camera->target[0], 10.0);
     assert_near(pose.lo[1], 1.0);
     assert_near(pose.hi[0], 11.0);
-    scene_pose_finish(&pose);
 }
 
 static struct scene *glass_scene(void)
@@ -231,7 +229,7 @@ static struct scene *glass_scene(void)
 static void check_objects(double floor_side, double low, double high)
 {
     own_scene *scene = scene_begin(NULL, "test");
-    struct scene_pose pose;
+    own_pose pose;
     double lo[3], hi[3];
     uint32_t node = scene_put_node(scene, SCENE_NONE, 0, 1, 0);
     scene_put(scene, mesh_box(2, 2, 2), &(struct put){.name = "box", .node = &node});
@@ -242,7 +240,6 @@ static void check_objects(double floor_side, double low, double high)
     scene_pose_objects(scene, &pose, lo, hi);
     assert_float_equal(lo[0], low, 1e-5);
     assert_float_equal(hi[0], high, 1e-5);
-    scene_pose_finish(&pose);
 }
 
 TEST(objects_are_framed_without_a_wide_floor)
