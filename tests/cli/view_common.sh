@@ -5,6 +5,7 @@ needs jq
 # Remembered cameras are stored in a folder of this test alone.
 XDG_STATE_HOME=$OUT/state
 export XDG_STATE_HOME
+mkfifo "$OUT/pipe" # for states as they come
 
 # run as in common.sh, but it ends a window that does not end by itself. $INPUT is the standard input of whit.
 INPUT=/dev/null
@@ -70,6 +71,25 @@ play() {
         test "$(grep -cv "${EXPECTED:-^$}" "$OUT/stderr")" -eq 0
     check "$what: all states are there" test "$(grep -c '^state' "$OUT/replay")" -eq \
         "$(grep -c '^{.*}$' "$OUT/states")"
+    as_wanted
+}
+
+# follow WHAT OPTION...: like play, with the replay in $OUT/replay, and calls on_state with each state as it comes.
+# Messages on standard error are left to the caller.
+follow() {
+    what=$1
+    shift
+    : >"$OUT/states"
+    timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$@" --replay "$OUT/replay" --quiet \
+        >"$OUT/pipe" 2>"$OUT/stderr" &
+    viewer=$!
+    while read -r state; do
+        printf "%s\n" "$state" >>"$OUT/states"
+        on_state "$state"
+    done <"$OUT/pipe"
+    wait $viewer
+    check "$what: exit code 0" test $? -eq 0
+    read_states
     as_wanted
 }
 

@@ -5,7 +5,6 @@
 . "$(dirname "$0")/view_common.sh"
 mkdir "$OUT/work"
 cd "$OUT/work" || exit 1
-mkfifo "$OUT/pipe"
 NONE=
 SMALL="--size 96x64"
 
@@ -132,24 +131,16 @@ mended: | error = | scene = own.json | frame.ids not as alive | words as alive
 missing! drop late.json, until error | scene = own.json
 came: until scene = late.json | error = | scene = late.json
 END
-    timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view own.json --size 96x64 \
-        --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
-    viewer=$!
-    while read -r state; do
-        echo "$state" >>"$OUT/read"
-        case $state in
+    on_state() {
+        case $1 in
         *'"at":"turned"'*) mv broken.json own.json ;;
         *'"at":"again"'*) mv larger.json own.json ;;
         *'"at":"missing"'*) mv own.json late.json ;;
         esac
-    done <"$OUT/pipe"
-    wait $viewer
-    check "read again: exit code 0" test $? -eq 0
+    }
+    follow "read again" own.json --size 96x64
     check "each error once on standard error" test "$(cut -d : -f 3,4 "$OUT/stderr" | tr '\n' ' ')" = \
         " own.json:$line  own.json:$line  late.json: there is no such file "
-    mv "$OUT/read" "$OUT/states"
-    read_states
-    as_wanted
 fi
 
 # If the scene cannot be read at the start, the viewer ends with an error.

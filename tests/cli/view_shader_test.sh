@@ -17,6 +17,16 @@ vec3 post(ivec2 at, vec3 color)
 END
 # hash_of FILE: prints the hash that whit gives the file, without making kernels.
 hash_of() { WHIT_TEST_NO_DEVICE=1 "$WHIT" shader "$1" --json 2>/dev/null | jq -r .hash; }
+# versions FILE NAME...: each NAME.new is a version of FILE, which becomes the first one; sets $NAME to its hash.
+versions() {
+    file=$1 first=$2
+    shift
+    for version in "$@"; do
+        cp "$version.new" "$file"
+        eval "$version=$(hash_of "$file")"
+    done
+    cp "$first.new" "$file"
+}
 # tint NAME COLOUR: writes NAME.new, a version of live/part/tint.glsl, and sets $NAME to the hash of live/a.glsl with
 # it.
 tint() {
@@ -35,8 +45,14 @@ check "five versions" test "$(printf '%s\n' "$green" "$blue" "$violet" "$red" "$
 printf 'vec3 tint(vec3 c) {\n    c.x = wrong;\n    c.y = here * here;\n    c.z = other;\n    c = far;\n    return c;\n}\n#include "deep.glsl"\n' \
     >broken.new
 printf '\nfloat deep = nowhere;\n\n' >live/part/deep.glsl
-mkfifo "$OUT/pipe"
 NONE=
+# post TEXT, bomb: print a file whose post() has this text, or a text of 2^40 words by macros that double.
+post() { printf 'vec3 post(ivec2 at, vec3 color)\n{\n%s\n}\n' "$1"; }
+bomb() {
+    echo '#define B0 color + color'
+    seq 39 | awk '{ print "#define B" $1 " B" $1 - 1 " + B" $1 - 1 }'
+    post '    return B39;'
+}
 # put FILE AT: renames a copy over AT. Of two saves in a row the second must not truncate the file while the window
 # reads the first: an empty file is an error that no state waits for.
 put() { cp "$1" live/new && mv live/new "$2"; }
@@ -66,26 +82,18 @@ on: choose stepped | render has --set stepped=on | frame.pixels as twice
 height: press F3 | render has --aov height | frame.pixels not as twice | frame.ids as on
 colour: press F3 | frame.pixels as on | frame.ids as on
 END
-    timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$CUBE" --size 200x150 --ui-scale 0.5 --shader live/a.glsl --aov heigth \
-        --replay "$OUT/replay" --quiet >"$OUT/pipe" 2>"$OUT/stderr" &
-    viewer=$!
-    while read -r state; do
-        printf "%s\n" "$state" >>"$OUT/read"
-        case $state in
+    on_state() {
+        case $1 in
         *'"at":"start"'*) cp red.new live/part/tint.glsl ;;          # as an editor writes it
         *'"at":"red"'*) cp broken.new live/part/tint.glsl ;;
         *'"at":"turned"'*) put green.new live/part/tint.glsl ;;
         *'"at":"alone"'*) put blue.new live/part/tint.glsl && put violet.new live/part/tint.glsl ;;
         esac
-    done <"$OUT/pipe"
-    wait $viewer
-    check "exit code 0" test $? -eq 0
+    }
+    follow "saves" "$CUBE" --size 200x150 --ui-scale 0.5 --shader live/a.glsl --aov heigth
     check "each error is said once" test "$(grep -cE 'error: live/part/(tint.glsl:(2:11|3|4:11|5:9)|deep.glsl:2:14): ' "$OUT/stderr")" -eq 5
     check "and nothing else" test "$(grep -c error: "$OUT/stderr")" -eq 5
     check "each change is said" grep -q "note: a.glsl: .* pixels other .*ids equal  preview [0-9]" "$OUT/stderr"
-    mv "$OUT/read" "$OUT/states"
-    read_states
-    as_wanted
     # On a busy machine the whole picture may be drawn before the first step is on the screen.
     case $(value step frame.divisor) in
     1) step="full size, 1 sample" ;;
@@ -94,24 +102,6 @@ END
     check "the window says which step it shows ($step)" expr "$(value step quality)" : "$step"
     check "B is the version before" test "$(value beside compare.b.pixels)" = "$(value turned frame.pixels)"
 fi
-
-# follow WHAT OPTION...: runs `whit view` with $OUT/replay, and calls on_state with each state as it comes.
-follow() {
-    what=$1
-    shift
-    : >"$OUT/states"
-    timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$@" --replay "$OUT/replay" --quiet \
-        >"$OUT/pipe" 2>"$OUT/stderr" &
-    viewer=$!
-    while read -r state; do
-        printf "%s\n" "$state" >>"$OUT/states"
-        on_state "$state"
-    done <"$OUT/pipe"
-    wait $viewer
-    check "$what: exit code 0" test $? -eq 0
-    read_states
-    as_wanted
-}
 
 # ---- A picture of it, a file of settings, and both again ----
 
@@ -227,11 +217,7 @@ vec3 miss(vec3 dir)
 }
 END
     sed 's/dbg//g' looks.new >plain.new
-    for version in plain looks; do
-        cp $version.new live/d.glsl
-        eval "$version=$(hash_of live/d.glsl)"
-    done
-    cp plain.new live/d.glsl
+    versions live/d.glsl plain looks
     VALUE="d.glsl:4: twice ? 2.0 : 1.0 ="
     steps >"$OUT/replay" <<END
 plain: click 4 4 | picked = true | probe.dbg = | probe.number = 1
@@ -255,7 +241,7 @@ fi
 # ---- Widgets of sliders change the next picture without compiling ----
 
 if part 0 4; then
-    cat >live/w.glsl <<'END'
+    cat >own.new <<'END'
 //@ slider bands 1 8 3
 //@ color rim #204060
 //@ choice mode plain,warm
@@ -266,11 +252,8 @@ vec3 post(ivec2 at, vec3 color)
     return mode == mode_warm ? color * vec3(1.0, 0.5, 0.2) : color;
 }
 END
-    sed 's/ceil/floor/' live/w.glsl >other.new
-    cp live/w.glsl own.glsl
-    cp other.new live/w.glsl
-    other=$(hash_of live/w.glsl)
-    cp own.glsl live/w.glsl
+    sed 's/ceil/floor/' own.new >other.new
+    versions live/w.glsl own other
     steps >"$OUT/replay" <<END
 start: press F2 x2, press X, press Tab, move 20 20 | error = | hud = off
 number: choose bands | render has bands= | frame.pixels not as start | picked = false
@@ -320,19 +303,13 @@ fi
 # ---- After harmful saves the window goes on with the last good picture ----
 
 if part 1 4; then
-    post() { printf 'vec3 post(ivec2 at, vec3 color)\n{\n%s\n}\n' "$1"; }
     post '    return color.bgr;' >good.new
     post '    while (color.r >= 0.0) color.r += 1.0; return color;' >endless.new
     post '    return vec3(sqrt(-1.0 - color.r));' >nan.new
     post "    return color * $(head -c 100000 /dev/zero | tr '\0' '(' | fold -w 1000)1.0;" >deep.new
-    { echo '#define B0 color + color' && seq 39 | awk '{ print "#define B" $1 " B" $1 - 1 " + B" $1 - 1 }' &&
-        post '    return B39;'; } >bomb.new
-    for version in gbr grb rrr; do
-        post "    return color.$version;" >$version.new
-        cp $version.new live/h.glsl
-        eval "$version=$(hash_of live/h.glsl)"
-    done
-    cp good.new live/h.glsl
+    bomb >bomb.new
+    for version in gbr grb rrr; do post "    return color.$version;" >$version.new; done
+    versions live/h.glsl good gbr grb rrr
     steps >"$OUT/replay" <<END
 start: | error =
 until shader.refused = 1
@@ -376,14 +353,9 @@ if part 3 4; then
         done
         kill -s "$1" "$child"
     }
-    { echo '#define B0 color + color' && seq 39 | awk '{ print "#define B" $1 " B" $1 - 1 " + B" $1 - 1 }' &&
-        echo 'vec3 post(ivec2 at, vec3 color) { return B39; }'; } >long.new # to compile
-    for version in rgb gbr brg; do
-        echo "vec3 post(ivec2 at, vec3 color) { return color.$version; }" >$version.new
-        cp $version.new live/k.glsl
-        eval "$version=$(hash_of live/k.glsl)"
-    done
-    cp rgb.new live/k.glsl
+    bomb >long.new # to compile
+    for version in rgb gbr brg; do post "    return color.$version;" >$version.new; done
+    versions live/k.glsl rgb gbr brg
     steps >"$OUT/replay" <<END
 start: | error = | shader.hash = $rgb
 until error
