@@ -210,8 +210,11 @@ static struct direct direct_of(const struct image *image, double ppd)
 
 /* Two pictures with gradients, steps and a line of single pixels, which differ in colours and
    features. */
-static void make_pair(struct image pair[2])
+static struct image pair[2];
+
+static int make_pair(void **state)
 {
+    (void)state;
     enum { WIDTH = 24, HEIGHT = 18 };
     static const uint8_t white[3] = {255, 255, 255};
     pair[0] = fixture_flat(WIDTH, HEIGHT, 3, 0.0f);
@@ -227,23 +230,25 @@ static void make_pair(struct image pair[2])
         }
         put(&pair[1], x, y, x == WIDTH / 2 ? white : codes);
     }
+    return 0;
 }
 
-static void finish_pair(struct image pair[2])
+static int finish_pair(void **state)
 {
+    (void)state;
     image_finish(&pair[0]);
     image_finish(&pair[1]);
+    return 0;
 }
 
 TEST(every_pixel_is_that_of_direct_sums)
 {
     static const double resolutions[] = {FLIP_PIXELS_PER_DEGREE, 25.0};
-    struct image pair[2], map;
-    make_pair(pair);
     for (int r = 0; r < 2; ++r) {
         struct direct sides[2] = {direct_of(&pair[0], resolutions[r]),
                                   direct_of(&pair[1], resolutions[r])};
         double max = 0.0;
+        own_image map = {0};
         flip_of(&pair[0], &pair[1], resolutions[r], &map);
         for (uint32_t i = 0; i < map.width * map.height; ++i) {
             double expected = direct_flip(sides, (int)(i % map.width), (int)(i / map.width));
@@ -253,9 +258,7 @@ TEST(every_pixel_is_that_of_direct_sums)
         assert_true(max < 2e-5);
         free(sides[0].ycc);
         free(sides[1].ycc);
-        image_finish(&map);
     }
-    finish_pair(pair);
 }
 
 /* Means and largest values are from a program in Python, with direct sums in doubles. */
@@ -264,17 +267,14 @@ TEST(means_are_those_of_another_program)
     static const struct {
         double resolution, mean, largest;
     } known[] = {{0.0, 0.2818399, 0.8323297}, {25.0, 0.2422116, 0.9854911}};
-    struct image pair[2], map;
-    make_pair(pair);
     for (int i = 0; i < 2; ++i) {
         struct flip_summary summary;
+        own_image map = {0};
         assert_int_equal(image_flip(&pair[0], &pair[1], known[i].resolution, &map, &summary),
                          WHIT_OK);
         assert_true(fabs(summary.mean - known[i].mean) < 2e-6);
         assert_true(fabs(summary.largest - known[i].largest) < 2e-5);
-        image_finish(&map);
     }
-    finish_pair(pair);
 }
 
 static double flip_of_colors(const uint8_t p[3], const uint8_t q[3])
@@ -328,23 +328,16 @@ TEST(grey_pair_is_as_published)
 
 TEST(equal_is_exactly_none)
 {
-    struct image pair[2];
-    make_pair(pair);
     assert_true(flip_of(&pair[0], &pair[0], 0.0, NULL) == 0.0);
     assert_true(flip_of(&pair[0], &pair[1], 0.0, NULL) > 0.1);
-    finish_pair(pair);
 }
 
 TEST(swapping_changes_nothing)
 {
-    struct image pair[2], there, back;
-    make_pair(pair);
+    own_image there = {0}, back = {0};
     flip_of(&pair[0], &pair[1], 0.0, &there);
     flip_of(&pair[1], &pair[0], 0.0, &back);
     assert_images_equal(&there, &back);
-    image_finish(&there);
-    image_finish(&back);
-    finish_pair(pair);
 }
 
 static struct image noisy(const struct image *image, float amplitude)
@@ -379,29 +372,26 @@ TEST(noise_counts_by_its_size)
 TEST(pictures_are_taken_as_shown)
 {
     static const uint8_t white[3] = {255, 255, 255}, magenta[3] = {255, 0, 255};
-    struct image a = image_of_one(12, 10, white), b = image_of_one(12, 10, white), maps[2];
+    own_image a = image_of_one(12, 10, white), b = image_of_one(12, 10, white);
+    own_image before = {0}, after = {0};
     for (int i = 0; i < 60; ++i)
         b.pixels[i] = 1.0f + (float)i;
     assert_true(flip_of(&a, &b, 0.0, NULL) == 0.0);
     b.pixels[3 * 61] = INFINITY;
     b.pixels[3 * 71 + 2] = NAN;
-    flip_of(&a, &b, 0.0, &maps[0]);
+    flip_of(&a, &b, 0.0, &before);
     put(&b, 1, 5, magenta);
     put(&b, 11, 5, magenta);
-    flip_of(&a, &b, 0.0, &maps[1]);
-    assert_images_equal(&maps[0], &maps[1]);
-    assert_true(maps[0].pixels[61] > 0.3f);
-    for (int i = 0; i < 2; ++i)
-        image_finish(&maps[i]);
-    image_finish(&a);
-    image_finish(&b);
+    flip_of(&a, &b, 0.0, &after);
+    assert_images_equal(&before, &after);
+    assert_true(before.pixels[61] > 0.3f);
 }
 
 TEST(other_pictures_are_refused)
 {
     own_image a = fixture_floats(4, 3, 3), b = fixture_floats(3, 4, 3);
     own_image ids = fixture_words(4, 3, 1);
-    struct image map;
+    own_image map = {0};
     struct flip_summary summary;
     assert_int_equal(image_flip(&a, &b, 0.0, &map, &summary), WHIT_ERROR_USAGE);
     assert_int_equal(image_flip(&ids, &ids, 0.0, &map, &summary), WHIT_ERROR_USAGE);
@@ -410,5 +400,6 @@ TEST(other_pictures_are_refused)
         assert_int_equal(image_flip(&a, &a, resolutions[i], &map, &summary), WHIT_ERROR_USAGE);
     assert_null(map.pixels);
     assert_int_equal(image_flip(&a, &a, 1000.0, &map, &summary), WHIT_OK);
-    image_finish(&map);
 }
+
+TESTS_IN(make_pair, finish_pair)

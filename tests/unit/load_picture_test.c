@@ -21,6 +21,13 @@ struct bytes {
     size_t count;
 };
 
+static void drop_bytes(struct bytes *bytes)
+{
+    free(bytes->data);
+}
+
+#define own_bytes __attribute__((cleanup(drop_bytes))) struct bytes
+
 /* A test picture: smooth, so that JPEG keeps it, and different in every channel. */
 static uint8_t texel(int x, int y, int channel)
 {
@@ -205,7 +212,7 @@ static void check_reason(const struct bytes *bytes, const char *wanted)
 /* JPEGs with few bytes that need much memory or time are refused. */
 TEST(greedy_jpegs_are_refused)
 {
-    struct bytes file = write_stb(95);
+    own_bytes file = write_stb(95);
     uint8_t *sides = file.data + find(&file, 0xc0, 0) + 5; /* height, width: 2 bytes each */
     memcpy(sides, (uint8_t[]){0x3f, 0xff, 0x3f, 0xff}, 4);
     check_reason(&file, "more than 2^26 pixels");
@@ -213,20 +220,16 @@ TEST(greedy_jpegs_are_refused)
     check_reason(&file, "a side has more than 16384");
     memcpy(sides, (uint8_t[]){0x20, 0, 0x20, 0}, 4);
     check_reason(&file, "more than there is in it");
-    free(file.data);
 
     /* One scan with its tables, repeated. */
-    file = progressive_file();
-    size_t begin = find(&file, 0xc4, find(&file, 0xda, 0));
-    size_t end = find(&file, 0xc4, find(&file, 0xda, begin));
-    struct bytes longer = {0};
-    append(&longer, file.data, (int)begin);
+    own_bytes scans = progressive_file(), longer = {0};
+    size_t begin = find(&scans, 0xc4, find(&scans, 0xda, 0));
+    size_t end = find(&scans, 0xc4, find(&scans, 0xda, begin));
+    append(&longer, scans.data, (int)begin);
     for (int i = 0; i < SCANS; i++)
-        append(&longer, file.data + begin, (int)(end - begin));
-    append(&longer, file.data + end, (int)(file.count - end));
+        append(&longer, scans.data + begin, (int)(end - begin));
+    append(&longer, scans.data + end, (int)(scans.count - end));
     check_reason(&longer, "too many scans");
-    free(longer.data);
-    free(file.data);
 }
 
 static size_t largest_block;
@@ -241,8 +244,7 @@ WRAPPED(void *, realloc, void *block, size_t size_bytes)
 TEST(pngs_take_what_their_header_tells_of)
 {
     enum { SIDE = 2048, IHDR_WIDTH = 16 };
-    (void)state;
-    struct bytes file = {0};
+    own_bytes file = {0};
     own_memory uint8_t *pixels = array_alloc_zeroed((size_t)SIDE * SIDE, 1);
     const char *reason = "";
     assert_non_null(pixels);
@@ -252,12 +254,11 @@ TEST(pngs_take_what_their_header_tells_of)
     largest_block = 0;
     check_reason(&file, "more than its header tells of");
     assert_in_range(largest_block, 1, (1 << 18) + 2 * file.count + 16 * 3 * 2);
-    free(file.data);
 }
 
 TEST_IN(damaged_textures_are_named, fixture_begin, fixture_end)
 {
-    struct bytes file = write_stb(95);
+    own_bytes file = write_stb(95);
     const char *path = put_data("cut.jpg", file.data, file.count / 2);
     uint32_t index;
     assert_int_equal(load_texture(fixture.scene, path, NULL, 0, NULL, &index, NULL), WHIT_OK);
@@ -268,7 +269,6 @@ TEST_IN(damaged_textures_are_named, fixture_begin, fixture_end)
     assert_int_equal(load_environment(fixture.scene, path, NULL), WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, 1);
     assert_non_null(strstr(messages.last_error, path));
-    free(file.data);
 }
 
 /* --- decoders that reach out ---------------------------------------------------------------- */
@@ -312,7 +312,7 @@ TEST_IN(environments_too_large_are_refused, fixture_begin, fixture_end)
 TEST_IN(decoders_that_reach_out_are_stopped, fixture_begin, fixture_end)
 {
     static const char why[] = "the decoder tried on this file what it may not, and was stopped";
-    struct bytes file = write_stb(95);
+    own_bytes file = write_stb(95);
     const char *jpeg = put_data("a.jpg", file.data, file.count);
     const char *sky = put_data("a.hdr", hdr, sizeof hdr - 1);
     uint32_t index;
@@ -328,7 +328,6 @@ TEST_IN(decoders_that_reach_out_are_stopped, fixture_begin, fixture_end)
     decoders_connect = false;
     assert_int_equal(load_environment(fixture.scene, jpeg, NULL), WHIT_OK);
     assert_int_equal(load_environment(fixture.scene, sky, NULL), WHIT_OK);
-    free(file.data);
 }
 
 /* A texture that cannot be decoded is magenta, but a required sandbox that is missing is an
@@ -336,7 +335,7 @@ TEST_IN(decoders_that_reach_out_are_stopped, fixture_begin, fixture_end)
 TEST_IN(a_sandbox_that_is_required_is_an_error, fixture_begin, fixture_end)
 {
     const whit_load_params params = {.require_sandbox = true};
-    struct bytes file = write_stb(95);
+    own_bytes file = write_stb(95);
     const char *jpeg = put_data("a.jpg", file.data, file.count);
     const char *sky = put_data("a.hdr", hdr, sizeof hdr - 1);
     uint32_t index;
@@ -348,5 +347,4 @@ TEST_IN(a_sandbox_that_is_required_is_an_error, fixture_begin, fixture_end)
     assert_non_null(strstr(messages.last_error, "the decoder cannot be locked in"));
     assert_int_equal(load_texture(fixture.scene, jpeg, NULL, 0, NULL, &index, NULL), WHIT_OK);
     sandbox_is_refused = false;
-    free(file.data);
 }

@@ -159,9 +159,8 @@ TEST(all_effects_need_no_thread)
     own_fixture f = fixture_open(terrain_scene(), NULL, &params);
     params.all_effects = true;
     fixture_renew(&f, &params);
-    struct image image = render(&f);
+    own_image image = render(&f);
     assert_null(f.renderer->async.job);
-    image_finish(&image);
 }
 
 /* Other scenes, other times, destroyed passes and cancelled pictures come while the thread is at
@@ -185,24 +184,19 @@ TEST(anything_may_come_in_between)
     cancel = true;
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_CANCELLED);
     cancel = false;
-    struct image before = render_general(&f);
+    own_image before = render_general(&f);
     passes_finish(f.renderer); /* as when a buffer grows */
-    struct image again = render_general(&f);
+    own_image again = render_general(&f);
     assert_same_image("again", &before, &again);
-    image_finish(&again);
     assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
-    again = render_specialised(&f);
-    assert_same_image("again", &before, &again);
-    image_finish(&again);
+    own_image moved = render_specialised(&f);
+    assert_same_image("again", &before, &moved);
     /* Constants that no longer fit: what the thread makes with them is not taken. */
     fixture_renew(&f, &params);
     f.renderer->effects.called[SCENE_EFFECT_SHADOWS] = false;
     passes_finish(f.renderer);
-    image_finish(&before);
-    before = render_general(&f);
+    own_image general = render_general(&f);
     assert_true(stats_of(f.renderer).rays_shadow > 0);
-    image_finish(&before);
-    before = render_specialised(&f);
+    own_image special = render_specialised(&f);
     assert_int_equal(stats_of(f.renderer).rays_shadow, 0);
-    image_finish(&before);
 }

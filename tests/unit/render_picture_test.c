@@ -393,16 +393,16 @@ static void check_colors_alone(whit_sampling sampling)
     own_picture all = picture_of(mixed_scene(), NULL, &params);
     params.color_only = true;
     own_fixture f = fixture_open(mixed_scene(), NULL, &params);
-    struct image color = render(&f), borrowed, none;
+    own_image color = render(&f);
+    struct image borrowed, none;
     whit_stats stats;
     renderer_get_stats(f.renderer, &stats);
     assert_same_image("colours alone", &color, &all.color);
     assert_int_equal(renderer_borrow_color(f.renderer, &borrowed), WHIT_OK);
     assert_same_image("borrowed", &borrowed, &all.color);
     image_finish(&borrowed); /* the renderer keeps its pixels */
-    image_finish(&color);
-    color = render(&f);
-    assert_same_image("drawn again", &color, &all.color);
+    own_image again = render(&f);
+    assert_same_image("drawn again", &again, &all.color);
     assert_true(stats.weight_cut_depth > 0.0 && stats.weight_cut_bailout > 0.0);
     assert_true(stats.weight_cut_depth == all.stats.weight_cut_depth);
     assert_true(stats.weight_cut_bailout == all.stats.weight_cut_bailout);
@@ -410,7 +410,6 @@ static void check_colors_alone(whit_sampling sampling)
     assert_true(stats.device_bytes < all.stats.device_bytes);
     assert_int_equal(renderer_read_ids(f.renderer, &none), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_read_cuts(f.renderer, &none), WHIT_ERROR_USAGE);
-    image_finish(&color);
 }
 
 TEST(colors_alone_are_the_same)
@@ -481,19 +480,17 @@ TEST(cancel_and_time_limit_stop)
 {
     bool cancel = true;
     whit_renderer_params params = {.width = 64, .height = 64, .cancel = &cancel};
-    struct fixture f = fixture_open(plain_scene(), NULL, &params);
+    own_fixture f = fixture_open(plain_scene(), NULL, &params);
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_CANCELLED);
     struct image image = {0};
     assert_int_equal(renderer_read_color(f.renderer, &image), WHIT_ERROR_USAGE);
-    fixture_close(&f);
     params.cancel = NULL;
     params.time_limit_s = 2.0;
-    f = fixture_open(plain_scene(), NULL, &params);
+    fixture_renew(&f, &params);
     now_ms += 1999.0;
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     now_ms += 2.0;
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_TIME_LIMIT);
-    fixture_close(&f);
 }
 
 /* Once a renderer has uploaded a scene's pictures, the scene may drop them; no other renderer can

@@ -30,6 +30,9 @@ static void drop(struct loaded *loaded)
     scene_destroy(loaded->scene);
 }
 
+/* Freed at the end of its block, once take() has filled it. */
+#define own_loaded __attribute__((cleanup(drop))) struct loaded
+
 /* A floor, a textured box and a ball below a node that moves, under a sun and a lamp. */
 struct wish {
     float ior, sun;
@@ -108,13 +111,11 @@ static const char *change(const struct loaded *before, const struct loaded *afte
 static void check_change(struct wish wish, const char *parts, whit_part_kind kind, const char *name,
                          const char *words)
 {
-    struct loaded before, after;
+    own_loaded before, after;
     take(&before, small_scene(&usual));
     take(&after, small_scene(&wish));
     assert_string_equal(others(&before, &after), parts);
     assert_string_equal(change(&before, &after, kind, name), words);
-    drop(&before);
-    drop(&after);
 }
 
 /* Checks that each plain value of a record is in its hash; else a picture of another scene might be
@@ -184,7 +185,7 @@ TEST(a_change_is_one_of_its_part_and_is_said)
 
 TEST(references_count_by_name)
 {
-    struct loaded before, after;
+    own_loaded before, after;
     struct wish wish = usual;
     wish.more = true;
     take(&before, small_scene(&usual));
@@ -198,8 +199,6 @@ TEST(references_count_by_name)
     assert_string_equal(others(&before, &after), "mesh box, material wood");
     assert_string_equal(change(&before, &after, WHIT_PART_MESH, "box"),
                         "12 of 12 primitives of material \"stone\" in place of \"wood\"");
-    drop(&before);
-    drop(&after);
 }
 
 /* The scene `after` with parts of `before` put back: all of them, the one of this kind and name, or
@@ -232,7 +231,7 @@ static void check_hash(struct scene *made, uint64_t hash)
    change. */
 static void check_back(struct wish both, struct wish other, whit_part_kind kind, const char *name)
 {
-    struct loaded before, after;
+    own_loaded before, after;
     own_scene *expected = small_scene(&other);
     take(&before, small_scene(&usual));
     take(&after, small_scene(&both));
@@ -240,8 +239,6 @@ static void check_back(struct wish both, struct wish other, whit_part_kind kind,
     check_hash(mix(&before, &after, false, kind, name), expected->hash);
     check_hash(mix(&before, &after, true, kind, NULL), before.scene->hash);
     check_hash(mix(&before, &after, false, kind, NULL), after.scene->hash);
-    drop(&before);
-    drop(&after);
 }
 
 TEST(a_part_that_is_put_back_leaves_the_others)
@@ -268,7 +265,7 @@ TEST(a_part_that_is_put_back_leaves_the_others)
  */
 TEST(what_a_part_names_comes_with_it)
 {
-    struct loaded before, after;
+    own_loaded before, after;
     struct wish wish = usual;
     wish.stone = true;
     take(&before, small_scene(&usual));
@@ -280,8 +277,6 @@ TEST(what_a_part_names_comes_with_it)
     const struct scene_texture *texture =
         &made->textures[worn->textures[SCENE_SLOT_DIFFUSE].texture];
     assert_int_equal(texture->rgba[0], 10);
-    drop(&before);
-    drop(&after);
 }
 
 static struct scene *load(const char *path)
@@ -336,7 +331,7 @@ static struct scene *model(bool lamp_glows, float strength)
 TEST(lights_made_to_suit_are_made_anew)
 {
     for (int glows = 0; glows < 2; ++glows) {
-        struct loaded before, after;
+        own_loaded before, after;
         take(&before, model(glows, glows ? 20.0f : 1e-3f));
         take(&after, model(glows, glows ? 40.0f : 3e-3f));
         const struct scene_light *light = &before.scene->lights[0];
@@ -348,8 +343,6 @@ TEST(lights_made_to_suit_are_made_anew)
         whit_part_kind kind = glows ? WHIT_PART_MATERIAL : WHIT_PART_LIGHT;
         check_hash(mix(&before, &after, false, kind, "lamp"), before.scene->hash);
         check_hash(mix(&before, &after, false, 0, NULL), after.scene->hash);
-        drop(&before);
-        drop(&after);
     }
 }
 
@@ -360,7 +353,7 @@ TEST(names_are_unique)
     for (int i = 0; i < 4; ++i)
         scene_put(scene, mesh_box(1, 1, 1 + i), &(struct put){.name = names[i]});
     scene_put(scene, mesh_box(1, 1, 9), NULL);
-    struct loaded loaded;
+    own_loaded loaded;
     take(&loaded, scene_ready(scene));
     const char *const unique[] = {"a", "a#2", "a#2#2", "a#3", "#4"};
     for (uint32_t i = 0; i < 5; ++i) {
@@ -370,7 +363,6 @@ TEST(names_are_unique)
     }
     assert_null(scene_parts_find(&loaded.parts, WHIT_PART_MESH, "b"));
     assert_null(scene_parts_find(&loaded.parts, WHIT_PART_LIGHT, "a")); /* a light by whit */
-    drop(&loaded);
 }
 
 /* ---- Faults ---- */
@@ -391,23 +383,22 @@ TEST(a_fault_alters_its_parts_alone)
         {WHIT_FAULT_MATERIALS, 0.0, "material ", 2},
         {WHIT_FAULT_ORDER, 0.0, "objects", 1},
     };
-    struct loaded before, after;
+    own_loaded before;
     take(&before, small_scene(&usual));
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         for (uint64_t seed = 0; seed < 8; ++seed) {
             whit_fault fault = {cases[i].kind, seed, cases[i].amount};
+            own_loaded after;
             struct scene *made;
             assert_int_equal(scene_fault(NULL, &before.side, &fault, 1, &made), WHIT_OK);
             take(&after, made);
             const char *text = others(&before, &after);
             assert_memory_equal(text, cases[i].begins, strlen(cases[i].begins));
             assert_int_equal(1 + (strchr(text, ',') != NULL), cases[i].parts);
-            drop(&after);
         }
     }
     whit_fault none = {WHIT_FAULT_KINDS, 0, 0.0};
     struct scene *made;
     assert_int_equal(scene_fault(NULL, &before.side, &none, 1, &made), WHIT_ERROR_USAGE);
     assert_null(made);
-    drop(&before);
 }

@@ -164,13 +164,12 @@ TEST(rooms_are_seen_from_inside)
         assert_true(fabs(lamp[2] * forward[0] + 1.5) < 0.02);
     }
     /* The same walls as a solid. */
-    struct scene *scene = empty_scene();
+    own_scene *scene = empty_scene();
     scene_put(scene, walls(half, 0, true), NULL);
     double forward[3];
     camera_of(scene, forward);
     assert_false(scene_noted(scene, "room"));
     assert_int_equal(scene->lights[0].kind, WHIT_LIGHT_DIRECTIONAL);
-    scene_destroy(scene);
 }
 
 TEST(boards_are_seen_straight_on)
@@ -227,7 +226,7 @@ TEST(small_parts_with_nearly_all_triangles_fill_the_picture)
 /* The tips of these cones are far from the centroids of their triangles. */
 TEST(long_triangles_of_a_part_are_in_the_picture)
 {
-    struct scene *scene = empty_scene();
+    own_scene *scene = empty_scene();
     struct scene_mesh cone;
     assert_int_equal(shape_cylinder(0.5, 0.0, 2.0, 64, &cone), WHIT_OK);
     scene_put(scene, mesh_plane(20), NULL);
@@ -237,7 +236,6 @@ TEST(long_triangles_of_a_part_are_in_the_picture)
     assert_true(scene_noted(scene, "shows the small part of it that nearly all triangles are in"));
     assert_true(reach(camera, forward, (const float[]){0, 2, 0}, slope) > 0.0);
     assert_true(fabs(slope[1]) < 1.0);
-    scene_destroy(scene);
 }
 
 /* The picture has room for an object that flies away later. */
@@ -337,10 +335,9 @@ TEST(lamps_of_models_light_their_scene)
         assert_true(under > 0.7 && under < 1.2);
         assert_true(scene->ambient[0] == 0.1f);
     }
-    struct scene *scene = lamp_scene(17.0f, "lamp.json");
+    own_scene *scene = lamp_scene(17.0f, "lamp.json");
     assert_true(fabs(light_total(scene) - 17.0 / 3.14159265358979) < 1e-4);
     assert_true(scene->ambient[0] == 0.03f);
-    scene_destroy(scene);
 }
 
 static struct scene *lit_scene(float level, const char *file)
@@ -468,6 +465,14 @@ static uint32_t lights_by_whit(const struct scene *scene, whit_light_kind kind)
     return count;
 }
 
+/* Asserts how many lights whit added to the scene, which it destroys. */
+static void assert_added(struct scene *scene, uint32_t directional, uint32_t point)
+{
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), directional);
+    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_POINT), point);
+    scene_destroy(scene);
+}
+
 /* A block with a glowing plate, in front of it or on the far side, out of the camera's view. */
 static struct scene *block_with_lamp(bool is_model, bool in_front)
 {
@@ -485,21 +490,12 @@ static struct scene *block_with_lamp(bool is_model, bool in_front)
 TEST(lamps_that_nobody_sees_get_help)
 {
     struct scene *scene = block_with_lamp(true, false);
-    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 1);
     assert_true(scene_noted(scene, "the file's light reaches 0 % of what is seen: a directional "
                                    "one was added, over the camera's left shoulder"));
     assert_true(scene_noted(scene, "no environment in the file: a sky was added"));
-    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_POINT), 0);
-    scene_destroy(scene);
-
-    scene = block_with_lamp(true, true);
-    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 0);
-    scene_destroy(scene);
-
-    /* In whit's own scene files lights are not changed. */
-    scene = block_with_lamp(false, false);
-    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 0);
-    scene_destroy(scene);
+    assert_added(scene, 1, 0);
+    assert_added(block_with_lamp(true, true), 0, 0);
+    assert_added(block_with_lamp(false, false), 0, 0); /* not in whit's own scene files */
 }
 
 /* A block of one material, with a little emission, which some exporters call transparent. */
@@ -519,12 +515,8 @@ static struct scene *block_that_emits(float emission)
 /* From so far away, points a little before the block would be lit by its own front. */
 TEST(surfaces_brighter_by_light_than_by_emission_get_help)
 {
-    struct scene *scene = block_that_emits(0.9f);
-    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 1);
-    scene_destroy(scene);
-    scene = block_that_emits(2.0f);
-    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 0);
-    scene_destroy(scene);
+    assert_added(block_that_emits(0.9f), 1, 0);
+    assert_added(block_that_emits(2.0f), 0, 0);
 }
 
 /* A wall with a circle of light of this radius, in a view of 5.1 by 6.8 units. */
@@ -547,12 +539,8 @@ static struct scene *wall_with_spot(double radius)
 
 TEST(lamps_that_light_less_than_half_get_help)
 {
-    struct scene *scene = wall_with_spot(2.1);
-    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 1);
-    scene_destroy(scene);
-    scene = wall_with_spot(2.55);
-    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 0);
-    scene_destroy(scene);
+    assert_added(wall_with_spot(2.1), 1, 0);
+    assert_added(wall_with_spot(2.55), 0, 0);
 }
 
 /* The camera stands in a box under the sun. `open`: as for walls(). `glass`: of the top. */
@@ -573,15 +561,11 @@ static struct scene *box_under_sun(unsigned open, bool glass)
 TEST(boxes_that_shut_the_sun_out_get_a_lamp)
 {
     struct scene *scene = box_under_sun(0, false);
-    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_POINT), 1);
     assert_true(scene_noted(scene, "light from outside reaches 0 % of what is seen: a lamp was "
                                    "added at the camera"));
-    scene_destroy(scene);
-    for (int glass = 0; glass < 2; ++glass) {
-        scene = box_under_sun(8, glass);
-        assert_int_equal(scene->light_count, 1);
-        scene_destroy(scene);
-    }
+    assert_added(scene, 1, 1);
+    assert_added(box_under_sun(8, false), 0, 0);
+    assert_added(box_under_sun(8, true), 0, 0);
     /* Whit's light over the shoulder reaches 41 % of what is seen in this open box: it is no closed
      * one.
      */
@@ -589,8 +573,5 @@ TEST(boxes_that_shut_the_sun_out_get_a_lamp)
     scene_put(scene, walls((const float[]){2, 3.5f, 2}, 8, false), NULL);
     scene_put_camera(scene, (const double[]){0, 0, 1.9}, (const double[]){0, -0.5, 0}, 1.2);
     scene->is_model = true;
-    scene = scene_ready(scene);
-    assert_int_equal(lights_by_whit(scene, WHIT_LIGHT_DIRECTIONAL), 1);
-    assert_int_equal(scene->light_count, 1);
-    scene_destroy(scene);
+    assert_added(scene_ready(scene), 1, 0);
 }
