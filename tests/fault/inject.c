@@ -33,6 +33,15 @@
     if (!next)                                                                                     \
     *(void **)&next = dlsym(RTLD_NEXT, name)
 
+/* A function that gives `failed` where the condition holds, and else is the one of its name. */
+#define CALL(result, name, parameters, arguments, condition, failed)                               \
+    result name parameters                                                                         \
+    {                                                                                              \
+        typedef result(*fn) parameters;                                                            \
+        NEXT(fn, #name);                                                                           \
+        return (condition) ? (failed) : next arguments;                                            \
+    }
+
 struct range {
     uintptr_t begin, end;
 };
@@ -335,13 +344,9 @@ void free(void *block)
     next(block);
 }
 
-int pthread_create(pthread_t *thread, const pthread_attr_t *how, void *(*run)(void *), void *user)
-{
-    typedef int (*fn)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
-    NEXT(fn, "pthread_create");
-    return fails(FAULT_CALLS_MEMORY, CALLER, "pthread_create") ? EAGAIN
-                                                               : next(thread, how, run, user);
-}
+CALL(int, pthread_create,
+     (pthread_t * thread, const pthread_attr_t *how, void *(*run)(void *), void *user),
+     (thread, how, run, user), fails(FAULT_CALLS_MEMORY, CALLER, "pthread_create"), EAGAIN)
 
 #endif
 
@@ -396,12 +401,8 @@ int openat(int folder, const char *path, int flags, ...)
     return cannot_open(flags, CALLER, "openat") ? -1 : next(folder, path, flags, mode);
 }
 
-ssize_t write(int file, const void *data, size_t bytes)
-{
-    typedef ssize_t (*fn)(int, const void *, size_t);
-    NEXT(fn, "write");
-    return file > STDERR_FILENO && disk_full(CALLER, "write") ? -1 : next(file, data, bytes);
-}
+CALL(ssize_t, write, (int file, const void *data, size_t bytes), (file, data, bytes),
+     file > STDERR_FILENO && disk_full(CALLER, "write"), -1)
 
 size_t fwrite(const void *data, size_t bytes, size_t count, FILE *stream)
 {
@@ -413,12 +414,7 @@ size_t fwrite(const void *data, size_t bytes, size_t count, FILE *stream)
     return 0;
 }
 
-int fflush(FILE *stream)
-{
-    typedef int (*fn)(FILE *);
-    NEXT(fn, "fflush");
-    return is_file(stream) && disk_full(CALLER, "fflush") ? EOF : next(stream);
-}
+CALL(int, fflush, (FILE * stream), (stream), is_file(stream) && disk_full(CALLER, "fflush"), EOF)
 
 int fclose(FILE *stream)
 {
@@ -432,36 +428,15 @@ int fclose(FILE *stream)
     return full ? EOF : result;
 }
 
-int fsync(int file)
-{
-    typedef int (*fn)(int);
-    NEXT(fn, "fsync");
-    return disk_full(CALLER, "fsync") ? -1 : next(file);
-}
-
-int rename(const char *from, const char *to)
-{
-    typedef int (*fn)(const char *, const char *);
-    NEXT(fn, "rename");
-    return disk_full(CALLER, "rename") ? -1 : next(from, to);
-}
-
-int renameat(int from_folder, const char *from, int to_folder, const char *to)
-{
-    typedef int (*fn)(int, const char *, int, const char *);
-    NEXT(fn, "renameat");
-    return disk_full(CALLER, "renameat") ? -1 : next(from_folder, from, to_folder, to);
-}
+CALL(int, fsync, (int file), (file), disk_full(CALLER, "fsync"), -1)
+CALL(int, rename, (const char *from, const char *to), (from, to), disk_full(CALLER, "rename"), -1)
+CALL(int, renameat, (int from_folder, const char *from, int to_folder, const char *to),
+     (from_folder, from, to_folder, to), disk_full(CALLER, "renameat"), -1)
 
 /* ---- Files that are read, folders, and what child processes are made of ---- */
 
 #define READ(result, name, parameters, arguments, failed)                                          \
-    result name parameters                                                                         \
-    {                                                                                              \
-        typedef result(*fn) parameters;                                                            \
-        NEXT(fn, #name);                                                                           \
-        return unreadable(CALLER, #name) ? (failed) : next arguments;                              \
-    }
+    CALL(result, name, parameters, arguments, unreadable(CALLER, #name), failed)
 
 READ(ssize_t, read, (int file, void *data, size_t bytes), (file, data, bytes), -1)
 READ(int, stat, (const char *path, struct stat *out), (path, out), -1)
