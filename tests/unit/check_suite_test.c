@@ -14,22 +14,35 @@ static void say(void *user, const char *text)
     snprintf(said + used, sizeof said - used, "%s\n", text + strlen(folder) + 1);
 }
 
-static bool read_text(struct suite *suite, const char *text, const char *root)
+static struct suite suite; /* read last; the next reading frees it */
+
+static bool read_file(const char *path, const char *root)
 {
     said[0] = '\0';
+    suite_finish(&suite);
+    return suite_read(&suite, path, root, NULL, say, NULL);
+}
+
+static bool read_text(const char *text, const char *root)
+{
     put_text("a.json", "");
     put_text("my scene.json", "");
     put_text("sky.hdr", "");
     (void)mkdir(in_folder("sub"), 0777);
     put_text("sub/b.json", "");
-    return suite_read(suite, put_text("s.whit", text), root, NULL, say, NULL);
+    return read_file(put_text("s.whit", text), root);
+}
+
+static void must_read(const char *text)
+{
+    if (!read_text(text, NULL))
+        fail_msg("%s", said);
 }
 
 /* Small suites stay small: what stands in a line once is kept for each of its cases. */
 TEST_IN(copies_are_limited, folder_begin, folder_end)
 {
     enum { LONG = 600000, CASES = 60 };
-    struct suite suite;
     own_memory char *text = malloc(LONG + 1000);
     char *at = text;
     for (int i = 0; i < CASES; ++i)
@@ -37,36 +50,29 @@ TEST_IN(copies_are_limited, folder_begin, folder_end)
     at += sprintf(at, "} a.json\n* expect rays == ");
     memset(at, '0', LONG);
     strcpy(at + LONG, "1\nx a.json --wrong\n");
-    assert_false(read_text(&suite, text, NULL));
+    assert_false(read_text(text, NULL));
     assert_string_equal(
         said, "s.whit:2: expectations of more than 64 MiB, each counted for each of its cases\n");
-    suite_finish(&suite);
 
     at = text + sprintf(text, "t{");
     memset(at, 'a', 2000);
     at += 2000 + sprintf(at + 2000, "} a.json ");
     for (int i = 0; i < 600; ++i)
         at += sprintf(at, "{}");
-    assert_false(read_text(&suite, text, NULL));
+    assert_false(read_text(text, NULL));
     assert_string_equal(said, "s.whit:1: too long with {} filled in, or out of memory\n");
-    suite_finish(&suite);
 }
 
 TEST_IN(lines_become_cases, folder_begin, folder_end)
 {
-    struct suite suite;
-    bool read = read_text(&suite,
-                          "# a comment\n"
-                          "one a.json\n"
-                          "\t two 'my scene.json' --size 64x48 # and a comment\r\n"
-                          "\n"
-                          "three \"my scene.json\" --background '#102030'\n"
-                          "four my\\ scene.json --environment sky.hdr\n"
-                          "level-{fast,exact} sub/b.json --numerics {}\n"
-                          "l{1,2}.x a.json --depth {} --camera '{}'",
-                          NULL);
-    if (!read)
-        fail_msg("%s", said);
+    must_read("# a comment\n"
+              "one a.json\n"
+              "\t two 'my scene.json' --size 64x48 # and a comment\r\n"
+              "\n"
+              "three \"my scene.json\" --background '#102030'\n"
+              "four my\\ scene.json --environment sky.hdr\n"
+              "level-{fast,exact} sub/b.json --numerics {}\n"
+              "l{1,2}.x a.json --depth {} --camera '{}'");
     assert_int_equal(suite.count, 8);
     assert_string_equal(suite.cases[0].name, "one");
     assert_int_equal(suite.cases[0].line, 2);
@@ -84,37 +90,27 @@ TEST_IN(lines_become_cases, folder_begin, folder_end)
     assert_int_equal(suite.cases[7].line, 8);
     assert_int_equal(suite.cases[7].settings->picture.depth, 2);
     assert_string_equal(suite.cases[7].settings->camera, "2");
-    suite_finish(&suite);
 }
 
 TEST_IN(names_are_from_the_root, folder_begin, folder_end)
 {
-    struct suite suite;
     const char *root = in_folder("sub");
-    assert_true(read_text(&suite, "one b.json", root));
+    assert_true(read_text("one b.json", root));
     assert_string_equal(suite.cases[0].settings->scene, in_folder("sub/b.json"));
-    suite_finish(&suite);
-    assert_false(read_text(&suite, "one ../a.json", root));
+    assert_false(read_text("one ../a.json", root));
     assert_non_null(strstr(said, "s.whit:1: the scene `../a.json`: it lies outside"));
-    suite_finish(&suite);
 }
 
 TEST_IN(expectations_go_to_their_cases, folder_begin, folder_end)
 {
-    struct suite suite;
-    bool read = read_text(&suite,
-                          "a-{x,y} a.json\nb a.json\n"
-                          "a-{x,y} expect rays == 1, pixel(1,2).instance == \"{}, #, 2\" # why\n"
-                          "* expect nonfinite == 0\n",
-                          NULL);
-    if (!read)
-        fail_msg("%s", said);
+    must_read("a-{x,y} a.json\nb a.json\n"
+              "a-{x,y} expect rays == 1, pixel(1,2).instance == \"{}, #, 2\" # why\n"
+              "* expect nonfinite == 0\n");
     assert_int_equal(suite.cases[0].expectation_count, 3);
     assert_string_equal(suite.cases[0].expectations[0].text, "rays == 1");
     assert_string_equal(suite.cases[1].expectations[1].text, "pixel(1,2).instance == \"y, #, 2\"");
     assert_int_equal(suite.cases[1].expectations[1].line, 3);
     assert_int_equal(suite.cases[2].expectation_count, 1);
-    suite_finish(&suite);
 }
 
 /* Each wrong line is reported, whatever else is wrong. */
@@ -167,12 +163,11 @@ TEST_IN(wrong_lines_are_told, folder_begin, folder_end)
         {"fine expect leaks == 0,", "an expectation is missing"},
     };
     enum { COUNT = sizeof wrong / sizeof *wrong };
-    struct suite suite;
     char text[8192] = "fine a.json\n";
     assert_int_equal(symlink("/etc/passwd", in_folder("away.json")), 0);
     for (size_t i = 0; i < COUNT; ++i)
         snprintf(text + strlen(text), sizeof text - strlen(text), "%s\n", wrong[i].line);
-    assert_false(read_text(&suite, text, NULL));
+    assert_false(read_text(text, NULL));
     assert_int_equal(suite.wrong, COUNT);
     char *at = said;
     for (size_t i = 0; i < COUNT; ++i) {
@@ -185,34 +180,24 @@ TEST_IN(wrong_lines_are_told, folder_begin, folder_end)
         at = end + 1;
     }
     assert_string_equal(at, "");
-    suite_finish(&suite);
 }
 
 TEST_IN(no_suite_is_told, folder_begin, folder_end)
 {
     static const char zero[] = "one a.json\0two a.json";
-    struct suite suite;
-    assert_false(read_text(&suite, "# nothing\n", NULL));
+    assert_false(read_text("# nothing\n", NULL));
     assert_string_equal(said, "s.whit: there is no case in it\n");
-    suite_finish(&suite);
     const char *path = put_data("z.whit", zero, sizeof zero);
-    said[0] = '\0';
-    assert_false(suite_read(&suite, path, NULL, NULL, say, NULL));
+    assert_false(read_file(path, NULL));
     assert_string_equal(said, "z.whit: not a suite: it has bytes that are 0\n");
-    suite_finish(&suite);
 }
 
 TEST_IN(expectations_are_read, folder_begin, folder_end)
 {
-    struct suite suite;
-    bool read = read_text(&suite,
-                          "a a.json --size 64x48\n"
-                          "a expect leaks==0, max_stack <= 24 , mean within 1e-3 of 0.4 0.5 0.6\n"
-                          "a expect pixel(63, 47).instance != none, pixel( 0,0 ) > 0.5\n"
-                          "a expect pixel(1,2).material == \"a == b\"\n",
-                          NULL);
-    if (!read)
-        fail_msg("%s", said);
+    must_read("a a.json --size 64x48\n"
+              "a expect leaks==0, max_stack <= 24 , mean within 1e-3 of 0.4 0.5 0.6\n"
+              "a expect pixel(63, 47).instance != none, pixel( 0,0 ) > 0.5\n"
+              "a expect pixel(1,2).material == \"a == b\"\n");
     const struct check_expectation *all = suite.cases[0].expectations;
     assert_int_equal(suite.cases[0].expectation_count, 6);
     assert_string_equal(expect_fields[all[0].field].name, "leaks");
@@ -229,7 +214,6 @@ TEST_IN(expectations_are_read, folder_begin, folder_end)
     assert_string_equal(expect_fields[all[4].field].name, "pixel");
     assert_int_equal(all[4].count, 1);
     assert_string_equal(all[5].word, "a == b");
-    suite_finish(&suite);
 }
 
 TEST_IN(wrong_expectations_are_told, folder_begin, folder_end)
@@ -257,13 +241,11 @@ TEST_IN(wrong_expectations_are_told, folder_begin, folder_end)
         {"pixel(1,1).instance == \"a\" b", "`\"a\" b`: a name in"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
-        struct suite suite;
         char text[256];
         snprintf(text, sizeof text, "a a.json --size 64x48\na expect %s\n", wrong[i][0]);
-        assert_false(read_text(&suite, text, NULL));
+        assert_false(read_text(text, NULL));
         assert_int_equal(suite.wrong, 1);
         if (!strstr(said, "s.whit:2: ") || !strstr(said, wrong[i][1]))
             fail_msg("`%s` says `%s`", wrong[i][0], said);
-        suite_finish(&suite);
     }
 }
