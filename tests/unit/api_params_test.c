@@ -1,38 +1,17 @@
 /* Parameters that no picture can have are refused by name, and NULL means the defaults. */
 #include "../wrapped.h"
-#include "messages_fixture.h"
-#include "unit.h"
-#include "whit.h"
-
-static whit_scene *scene;
-static whit_accel *accel;
-static whit_device *device;
+#include "scene_fixture.h"
 
 static int begin(void **state)
 {
-    (void)state;
     messages = (struct messages){0};
-    assert_int_equal(whit_scene_load(WHIT_SCENES_DIR "/cube.json", NULL, &warnings_log, &scene),
-                     WHIT_OK);
-    assert_int_equal(whit_accel_create(scene, NULL, &accel), WHIT_OK);
-    assert_int_equal(whit_device_create(NULL, &warnings_log, &device), WHIT_OK);
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    whit_device_destroy(device);
-    whit_accel_destroy(accel);
-    whit_scene_destroy(scene);
-    return 0;
+    scene_open(WHIT_SCENES_DIR "/cube.json");
+    return device_begin(state);
 }
 
 static whit_renderer_params small(void)
 {
-    whit_renderer_params params = whit_renderer_defaults();
-    params.width = params.height = 16;
-    return params;
+    return params_sized(16, 16, NULL);
 }
 
 /* With a device (`on` is it) and without (NULL). */
@@ -45,7 +24,7 @@ static void refuse(whit_device *on, const whit_renderer_params *params, const ch
     assert_non_null(strstr(messages.last_error, reason));
 }
 
-TEST_IN(values_out_of_range_are_refused, begin, end)
+TEST_IN(values_out_of_range_are_refused, begin, device_end)
 {
     for (int i = 0; i < 2; ++i) {
         whit_renderer_params params = small();
@@ -89,13 +68,12 @@ TEST_IN(values_out_of_range_are_refused, begin, end)
     }
 }
 
-TEST_IN(a_view_out_of_range_leaves_the_picture, begin, end)
+TEST_IN(a_view_out_of_range_leaves_the_picture, begin, device_end)
 {
     whit_renderer_params params = small();
-    whit_renderer *renderer = NULL;
     whit_image *image = NULL;
     const whit_camera nowhere = {.own = true};
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     params.exposure_ev = INFINITY;
     assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_ERROR_USAGE);
@@ -108,21 +86,19 @@ TEST_IN(a_view_out_of_range_leaves_the_picture, begin, end)
     assert_int_equal(whit_renderer_render_views(renderer, &nowhere, 1), WHIT_ERROR_USAGE);
     assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_ERROR_USAGE);
     assert_non_null(strstr(messages.last_error, "since the renderer was made, changed or failed"));
-    whit_renderer_destroy(renderer);
 }
 
-TEST_IN(rays_are_traced_in_one_of_the_ways_that_there_are, begin, end)
+TEST_IN(rays_are_traced_in_one_of_the_ways_that_there_are, begin, device_end)
 {
     const whit_ray ray = {{0, 9, 0}, 0, {0, -1, 0}, INFINITY};
     const whit_renderer_params params = small();
-    whit_renderer *renderer = NULL;
+    own_whit_renderer *renderer = NULL;
     whit_hit hit;
     assert_int_equal(whit_renderer_create(NULL, accel, &params, &renderer), WHIT_OK);
     messages = (struct messages){0};
     assert_int_equal(whit_trace(renderer, (whit_trace_on)9, &ray, 1, false, &hit, NULL),
                      WHIT_ERROR_USAGE);
     assert_non_null(strstr(messages.last_error, "not on 9"));
-    whit_renderer_destroy(renderer);
 }
 
 TEST(limits_of_importers_are_not_below_0)
@@ -173,13 +149,12 @@ WRAPPED(void *, array_alloc_zeroed, size_t count, size_t element_bytes)
                                              : __real_array_alloc_zeroed(count, element_bytes);
 }
 
-TEST_IN(a_picture_without_memory_is_one_line_in_the_log, begin, end)
+TEST_IN(a_picture_without_memory_is_one_line_in_the_log, begin, device_end)
 {
     const whit_renderer_params params = small();
-    whit_renderer *renderer = NULL;
     whit_reference *reference = NULL;
     whit_image *image = NULL;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_reference_create(accel, &params, 1, &reference), WHIT_OK);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     messages = (struct messages){0};
@@ -192,11 +167,10 @@ TEST_IN(a_picture_without_memory_is_one_line_in_the_log, begin, end)
     assert_int_equal(messages.errors, 2);
     assert_non_null(strstr(messages.last_error, "out of memory for 16 x 16 pixels"));
     whit_reference_destroy(reference);
-    whit_renderer_destroy(renderer);
 }
 
 /* The grid of camera rays has as many columns as wanted rays at most, however wide the picture. */
-TEST_IN(judges_of_wide_pictures_have_no_more_rays_than_asked, begin, end)
+TEST_IN(judges_of_wide_pictures_have_no_more_rays_than_asked, begin, device_end)
 {
     const uint32_t sizes[][3] = {{4096, 16, 100}, {65535, 1, 1}, {1, 65535, 100}, {4, 3, 12}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; ++i) {
@@ -231,7 +205,7 @@ static void refuse_hard_view(const whit_hard_view_params *params, const char *re
     assert_non_null(strstr(messages.last_error, reason));
 }
 
-TEST_IN(judges_refuse_values_out_of_range, begin, end)
+TEST_IN(judges_refuse_values_out_of_range, begin, device_end)
 {
     const whit_judge_params good = {.count = 12};
     whit_judge *judge = NULL;
@@ -262,7 +236,7 @@ static bool first_triangle(void *user, const whit_triangle *triangle)
     return false;
 }
 
-TEST_IN(there_is_nothing_at_a_time_that_is_not_finite, begin, end)
+TEST_IN(there_is_nothing_at_a_time_that_is_not_finite, begin, device_end)
 {
     bool called = false;
     whit_box *boxes = NULL;
@@ -276,33 +250,27 @@ TEST_IN(there_is_nothing_at_a_time_that_is_not_finite, begin, end)
     assert_non_null(strstr(messages.text, "a time of inf s: it must be finite\n"));
 }
 
-TEST_IN(no_params_are_the_defaults, begin, end)
+TEST_IN(no_params_are_the_defaults, begin, device_end)
 {
     const whit_renderer_params params = small();
     whit_image_info info;
-    whit_renderer *renderer = NULL;
     whit_refine *refine = NULL;
-    whit_image *image = NULL;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_set_view(renderer, NULL), WHIT_OK);
-    assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_OK);
+    own_whit_image *image = drawn_by(renderer);
     whit_image_get_info(image, &info);
     assert_int_equal(info.width, 640);
     whit_image_display_as(image, NULL);
-    whit_image_destroy(image);
     assert_int_equal(whit_refine_create(renderer, NULL, &refine), WHIT_OK);
     whit_refine_destroy(refine);
-    whit_renderer_destroy(renderer);
 }
 
-TEST_IN(images_that_there_are_none_of_are_refused, begin, end)
+TEST_IN(images_that_there_are_none_of_are_refused, begin, device_end)
 {
     whit_renderer_params params = small();
-    whit_renderer *renderer = NULL;
-    whit_image *image = NULL;
+    own_whit_image *image = NULL;
     params.sampling = (whit_sampling){.count = 4, .first = 4};
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
     messages = (struct messages){0};
     assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &image), WHIT_ERROR_USAGE);
@@ -315,21 +283,15 @@ TEST_IN(images_that_there_are_none_of_are_refused, begin, end)
     assert_int_equal(whit_image_compare(image, image, &from_afar, &warnings_log, &difference, NULL),
                      WHIT_ERROR_USAGE);
     assert_non_null(strstr(messages.last_error, "0.5 pixels a degree: must be 1 to 1000"));
-    whit_image_destroy(image);
-    whit_renderer_destroy(renderer);
 }
 
-TEST_IN(identities_are_not_displayed, begin, end)
+TEST_IN(identities_are_not_displayed, begin, device_end)
 {
     const whit_renderer_params params = small();
     uint8_t rgba[16 * 16 * 4] = {7};
-    whit_renderer *renderer = NULL;
-    whit_image *ids = NULL;
-    assert_int_equal(whit_renderer_create(device, accel, &params, &renderer), WHIT_OK);
+    own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &ids), WHIT_OK);
+    own_whit_image *ids = image_of(renderer, WHIT_AOV_IDS);
     whit_image_display_bytes(ids, rgba);
     assert_int_equal(rgba[0], 7);
-    whit_image_destroy(ids);
-    whit_renderer_destroy(renderer);
 }

@@ -212,7 +212,7 @@ static void fail_to_draw(const whit_shader *shader, const char *sliders, const c
 
 TEST_IN(loops_without_end_have_no_picture, begin, end)
 {
-    whit_shader *shader =
+    own_whit_shader *shader =
         load("//@ choice loop none,for,while,do,nested,camera,shade,miss,surface,scatter,aov\n"
              "void camera(vec2 at, inout vec3 origin, inout vec3 dir) {\n"
              " for (; loop == loop_camera;) dir.x += 1.0; }\n"
@@ -248,19 +248,17 @@ TEST_IN(loops_without_end_have_no_picture, begin, end)
         snprintf(sliders, sizeof sliders, "loop=%s", cases[i].name);
         fail_to_draw(shader, sliders, cases[i].place, "fuel");
     }
-    whit_shader_destroy(shader);
     all_are_reported();
 }
 
 TEST_IN(all_of_the_most_fuel_may_be_used, begin, end)
 {
-    whit_shader *shader = load("//@ fuel 30000\n//@ toggle more off\n" POST
-                               " for (int i = 0; i < (more ? 30001 : 29999); ++i)\n"
-                               "  color.r += 1e-9;\n return color; }\n");
+    own_whit_shader *shader = load("//@ fuel 30000\n//@ toggle more off\n" POST
+                                   " for (int i = 0; i < (more ? 30001 : 29999); ++i)\n"
+                                   "  color.r += 1e-9;\n return color; }\n");
     float pixels[PIXELS * 4];
     assert_int_equal(draw(shader, NULL, pixels), WHIT_OK);
     fail_to_draw(shader, "more=on", "a.glsl:4:", "fuel");
-    whit_shader_destroy(shader);
     all_are_reported();
 }
 
@@ -268,7 +266,7 @@ TEST_IN(all_of_the_most_fuel_may_be_used, begin, end)
 TEST_IN(what_is_no_number_has_no_picture, begin, end)
 {
     static const char *const hooks[] = {"camera", "surface", "shade", "scatter", "miss", "post"};
-    whit_shader *shader =
+    own_whit_shader *shader =
         load("//@ choice where none,camera,surface,shade,scatter,miss,aov,post,division\n"
              "//@ choice what nan,inf\n"
              "//@ slider zero 0 1 0\n"
@@ -303,7 +301,6 @@ TEST_IN(what_is_no_number_has_no_picture, begin, end)
     bool same =
         draw(shader, "where=aov", pixels) == WHIT_OK && memcmp(usual, pixels, sizeof usual) == 0;
     count("where=aov", start_ms, same && !messages.text[0]);
-    whit_shader_destroy(shader);
     all_are_reported();
 }
 
@@ -315,7 +312,7 @@ TEST_IN(indices_and_divisions_of_integers_have_a_picture, begin, end)
         float value; /* of all pixels; -1: any that is finite */
     } cases[] = {
         {"first", 1.0f}, {"minus", 4.0f}, {"large", 4.0f}, {"division", -1.0f}, {"early", 5.0f}};
-    whit_shader *shader = load(
+    own_whit_shader *shader = load(
         "//@ choice how first,minus,large,division,early\n"
         "const float table[4] = float[4](1.0, 2.0, 3.0, 4.0);\n" POST
         " if (how == how_early) { for (int i = 0; i < 9; ++i) { if (i == 5) return vec3(i); } }\n"
@@ -336,6 +333,5 @@ TEST_IN(indices_and_divisions_of_integers_have_a_picture, begin, end)
                                          : pixels[4 * k] == cases[i].value;
         count(sliders, start_ms, fine && !messages.text[0]);
     }
-    whit_shader_destroy(shader);
     all_are_reported();
 }
