@@ -53,29 +53,23 @@ TEST(one_mesh)
     check_levels(terrain_scene(), NULL);
 }
 
-TEST(instances)
+TEST_BY_TURNS(instances, 0, 2)
 {
-    if (!unit_turn(0, 2))
-        skip();
     check_levels(ring_scene(), NULL);
     check_levels(ring_scene(), &(whit_accel_params){.instances = WHIT_INSTANCES_OFF});
 }
 
 /* At 2^-20 of the size of the terrain in one_mesh: no level may depend on a built-in length. */
-TEST(split_triangles)
+TEST_BY_TURNS(split_triangles, 1, 2)
 {
-    if (!unit_turn(1, 2))
-        skip();
     struct scene *scene = scene_begin(&fixture_log, "test");
     scene_put(scene, mesh_terrain(0x1p-20 * 10.0, 0x1p-20 * 2.0, 40, 3), NULL);
     check_levels(scene, &(whit_accel_params){.build = WHIT_BUILD_SPATIAL, .spatial_alpha = 1e-9f});
 }
 
 /* The same triangle many times, in one mesh and in instances at one place, so that hits tie. */
-TEST(ties)
+TEST_BY_TURNS(ties, 0, 2)
 {
-    if (!unit_turn(0, 2))
-        skip();
     struct scene *scene = scene_begin(&fixture_log, "test");
     scene_put_mesh(scene, mesh_terrain(10.0, 2.0, 4, 3));
     for (int i = 0; i < 6; ++i)
@@ -85,10 +79,8 @@ TEST(ties)
 
 /* Spheres that stick out of terrain: hits of spheres and of triangles, which are decided in two
    ways, must be in the right order. aim_rays aims only at triangles. */
-TEST(spheres)
+TEST_BY_TURNS(spheres, 1, 2)
 {
-    if (!unit_turn(1, 2))
-        skip();
     struct scene_mesh balls = scattered_spheres(60, 5.0, 1.5);
     struct scene *scene = terrain_scene();
     scene_put(scene, balls, NULL);

@@ -153,6 +153,9 @@ static void assert_report(const struct probe_report *report)
 
 /* ---- A picture, pixel by pixel ---- */
 
+/* Freed at the end of its block. */
+#define own_report __attribute__((cleanup(probe_report_finish))) struct probe_report
+
 /* Probes a pixel; records at most `max` rays, 0: all. */
 static struct probe_report probe(const struct fixture *f, uint32_t x, uint32_t y, uint32_t max)
 {
@@ -169,13 +172,12 @@ static struct sums probe_picture(struct fixture *f)
     const whit_stats *stats = &before.stats;
     uint32_t width = before.color.width, pixels = width * before.color.height;
     for (uint32_t i = 0; i < pixels; ++i) {
-        struct probe_report report = probe(f, i % width, i / width, 0);
+        own_report report = probe(f, i % width, i / width, 0);
         assert_int_equal(report.dropped, 0);
         assert_memory_equal(report.color, &before.color.pixels[4 * (size_t)i], 3 * sizeof(float));
         assert_int_equal(report.rays[0].traced.instance, before.ids.words[2 * (size_t)i]);
         assert_int_equal(report.rays[0].traced.primitive, before.ids.words[2 * (size_t)i + 1]);
         add_to_sums(&report, &sums);
-        probe_report_finish(&report);
     }
     if (stats->rays_primary == pixels) {
         assert_int_equal(sums.kinds[RAY_PRIMARY], stats->rays_primary);
@@ -219,10 +221,8 @@ static void assert_all_kinds(const struct sums *sums)
 
 /* surfaces_let_rays_pass checks the same only at `exact`, whose kernels take longest to compile;
    scenes_of_all_kinds has surfaces that let rays pass at other levels. */
-TEST(rays_are_those_of_the_picture)
+TEST_BY_TURNS(rays_are_those_of_the_picture, 0, 2)
 {
-    if (!unit_turn(0, 2))
-        skip();
     own_fixture f = fixture_open(glass_scene(), NULL, &small);
     struct sums sums = probe_picture(&f);
     assert_all_kinds(&sums);
@@ -276,10 +276,8 @@ static struct scene *sieve_scene(void)
 static const whit_renderer_params sieve_params = {
     .width = SIDE, .height = 6, .depth = 3, .bailout = 0.05, .light_samples = 4};
 
-TEST(surfaces_let_rays_pass)
+TEST_BY_TURNS(surfaces_let_rays_pass, 1, 2)
 {
-    if (!unit_turn(1, 2))
-        skip();
     whit_renderer_params params = sieve_params;
     params.numerics = NUMERICS_EXACT;
     own_fixture f = fixture_open(sieve_scene(), NULL, &params);
@@ -332,10 +330,8 @@ TEST(scenes_of_all_kinds)
 }
 
 /* When the renderer's time or view changes, the probe's passes and buffers change as well. */
-TEST(another_time_and_size)
+TEST_BY_TURNS(another_time_and_size, 0, 2)
 {
-    if (!unit_turn(0, 2))
-        skip();
     const whit_renderer_params params = {.width = SIDE, .height = 6, .depth = 3};
     own_fixture f = fixture_open(file_scene("spin"), NULL, &params);
     struct sums before = probe_picture(&f);
@@ -352,27 +348,22 @@ TEST(another_time_and_size)
 
 /* ---- More samples, less room, and nothing ---- */
 
-TEST(color_is_of_all_samples)
+TEST_BY_TURNS(color_is_of_all_samples, 1, 2)
 {
-    if (!unit_turn(1, 2))
-        skip();
     whit_renderer_params params = small;
     params.sampling.count = 4;
     params.width = params.height = 4;
-    struct fixture f = fixture_open(glass_scene(), NULL, &params);
+    own_fixture f = fixture_open(glass_scene(), NULL, &params);
     struct sums four = probe_picture(&f);
-    fixture_close(&f);
     assert_int_equal(four.kinds[RAY_PRIMARY], 4 * 4);
     /* An adaptive picture begins with 4 samples. */
     own_image picture = color_of(glass_scene(), NULL, &params);
     params.sampling.count = 0;
     params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE, .contrast = 1.0};
-    f = fixture_open(glass_scene(), NULL, &params);
-    struct probe_report report = probe(&f, 3, 2, 0);
+    fixture_renew(&f, &params);
+    own_report report = probe(&f, 3, 2, 0);
     assert_int_equal(report.samples, 4);
     assert_memory_equal(report.color, &picture.pixels[4 * (2 * 4 + 3)], 3 * sizeof(float));
-    probe_report_finish(&report);
-    fixture_close(&f);
 }
 
 /* The pixel with the most rays. */
@@ -381,10 +372,9 @@ static uint32_t busiest_pixel(struct fixture *f, uint32_t *rays)
     uint32_t best = 0;
     *rays = 0;
     for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
-        struct probe_report report = probe(f, i % SIDE, i / SIDE, 0);
+        own_report report = probe(f, i % SIDE, i / SIDE, 0);
         best = report.ray_count > *rays ? i : best;
         *rays = report.ray_count > *rays ? report.ray_count : *rays;
-        probe_report_finish(&report);
     }
     return best;
 }
@@ -393,17 +383,15 @@ TEST(rays_without_room_are_counted)
 {
     own_fixture f = fixture_open(glass_scene(), NULL, &small);
     uint32_t all, pixel = busiest_pixel(&f, &all);
-    struct probe_report whole = probe(&f, pixel % SIDE, pixel / SIDE, 0);
+    own_report whole = probe(&f, pixel % SIDE, pixel / SIDE, 0);
     assert_int_equal(whole.dropped, 0);
     assert_true(all > 10);
     for (uint32_t max = 1; max < all; max += 4) {
-        struct probe_report part = probe(&f, pixel % SIDE, pixel / SIDE, max);
+        own_report part = probe(&f, pixel % SIDE, pixel / SIDE, max);
         assert_int_equal(part.ray_count, max);
         assert_int_equal(part.dropped, all - max);
         assert_memory_equal(part.color, whole.color, sizeof part.color);
-        probe_report_finish(&part);
     }
-    probe_report_finish(&whole);
 }
 
 TEST(pixels_outside_are_refused)
@@ -413,8 +401,7 @@ TEST(pixels_outside_are_refused)
     assert_int_equal(renderer_probe(f.renderer, SIDE, 0, 0, &report), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_probe(f.renderer, 0, SIDE, 0, &report), WHIT_ERROR_USAGE);
     assert_null(report.rays);
-    report = probe(&f, SIDE - 1, SIDE - 1, 0);
-    probe_report_finish(&report);
+    own_report last = probe(&f, SIDE - 1, SIDE - 1, 0);
 }
 
 static struct pipeline_info kernel_of(const struct pass *pass)
@@ -431,8 +418,7 @@ TEST(pictures_know_nothing_of_it)
 {
     own_fixture f = fixture_open(glass_scene(), NULL, &small);
     struct renderer *r = f.renderer;
-    struct image picture = render(&f);
-    image_finish(&picture);
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     assert_null(r->probe.records);
     assert_null(r->probe.buffers.pixels);
     assert_null(r->probe.stages.set.passes[STAGE_SHADE].pipeline);
@@ -440,8 +426,7 @@ TEST(pictures_know_nothing_of_it)
     const struct pass *shading = &r->picture.stages.set.passes[STAGE_SHADE];
     struct pipeline_info before = kernel_of(shading);
     assert_false(before.bindings >> BIND_PROBE & 1);
-    struct probe_report report = probe(&f, 2, 2, 0);
-    probe_report_finish(&report);
+    own_report report = probe(&f, 2, 2, 0);
     struct pipeline_info after = kernel_of(shading),
                          probe = kernel_of(&r->probe.stages.set.passes[STAGE_SHADE]);
     assert_int_equal(after.instructions, before.instructions);

@@ -19,16 +19,22 @@ static struct settings settings_of(const char *scene)
     return settings;
 }
 
+/* Waits for the engine a moment and takes its picture. Gives whether there is a new one. */
+static bool take(struct engine *engine, struct engine_frame *frame, double start_ms)
+{
+    engine_wait(engine, 20.0);
+    assert_true(clock_ms() - start_ms < PATIENCE_MS); /* it hangs */
+    return engine_take(engine, false, frame);
+}
+
 /* Takes pictures until the engine has nothing left to do. */
 static void take_both(struct engine *engine, struct engine_frame *frame, struct engine_frame *other)
 {
     double start_ms = clock_ms();
     while (!engine_is_still(engine)) {
-        engine_wait(engine, 20.0);
-        (void)engine_take(engine, false, frame);
+        (void)take(engine, frame, start_ms);
         if (other)
             (void)engine_take(engine, true, other);
-        assert_true(clock_ms() - start_ms < PATIENCE_MS); /* it hangs */
     }
     (void)engine_take(engine, false, frame);
 }
@@ -169,27 +175,19 @@ TEST(whoever_moves_on_does_not_wait_for_refining)
     struct engine *engine = engine_of(&(struct engine_params){.refine = true}, &settings, &frame);
     double start_ms = clock_ms();
     while (!frame.refined || frame.samples < 16) {
-        engine_wait(engine, 20.0);
-        (void)engine_take(engine, false, &frame);
+        (void)take(engine, &frame, start_ms);
         assert_true(frame.refined ? !frame.ids && frame.samples > 1 : frame.samples == 1);
-        assert_true(clock_ms() - start_ms < PATIENCE_MS);
     }
     for (uint32_t depth = 0; depth < 3; ++depth) {
         uint64_t before = frame.number;
         settings.picture.depth = depth + 1;
         engine_ask(engine, &settings, false);
-        while (frame.number == before || frame.refined) {
-            engine_wait(engine, 20.0);
-            (void)engine_take(engine, false, &frame);
-            assert_true(clock_ms() - start_ms < PATIENCE_MS);
-        }
+        while (frame.number == before || frame.refined)
+            (void)take(engine, &frame, start_ms);
         assert_int_equal(frame.settings.picture.depth, depth + 1);
         assert_int_equal(frame.samples, 1);
-        while (!frame.refined) {
-            engine_wait(engine, 20.0);
-            (void)engine_take(engine, false, &frame);
-            assert_true(clock_ms() - start_ms < PATIENCE_MS);
-        }
+        while (!frame.refined)
+            (void)take(engine, &frame, start_ms);
         assert_int_equal(frame.settings.picture.depth, depth + 1);
     }
     assert_false(engine_is_refined(engine));
@@ -306,10 +304,8 @@ TEST(a_switch_keeps_the_picture)
     engine_ask(engine, &settings, false);
     double start_ms = clock_ms();
     while (!engine_is_still(engine)) {
-        engine_wait(engine, 20.0);
-        if (engine_take(engine, false, &frame))
+        if (take(engine, &frame, start_ms))
             assert_int_equal(frame.settings.trees.build, WHIT_BUILD_MEDIAN);
-        assert_true(clock_ms() - start_ms < PATIENCE_MS);
     }
     struct engine_status status;
     engine_get_status(engine, &status);
