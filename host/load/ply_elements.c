@@ -137,15 +137,19 @@ whit_result ply_check(const whit_log *log, const char *path, const uint8_t *data
     uint32_t line = 0;
     whit_result result = read_header(data, size_bytes, &header) ? WHIT_OK : WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; i < header.element_count; i++) {
-        line = header.elements[i].count > max ? header.elements[i].line : line;
-        max = header.elements[i].count > max ? header.elements[i].count : max;
+        const struct element *element = &header.elements[i];
+        if (element->property_count > 0 && element->count > max) { /* others have no data */
+            line = element->line;
+            max = element->count;
+        }
     }
+    size_t behind = header.end < size_bytes ? size_bytes - header.end : 0;
     if (result == WHIT_OK && !header.has_end) {
         log_error(log, "%s:%u: the file ends within its header", path, header.line_count + 1);
         result = WHIT_ERROR_INPUT;
-    } else if (result == WHIT_OK && header.end <= size_bytes && max > size_bytes - header.end) {
+    } else if (result == WHIT_OK && max > behind) {
         log_error(log, "%s:%u: %llu elements, but only %zu bytes behind the header", path, line,
-                  max, size_bytes - header.end);
+                  max, behind);
         result = WHIT_ERROR_INPUT;
     }
     header_finish(&header);

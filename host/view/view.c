@@ -340,6 +340,10 @@ static void take_events(struct view *view)
 {
     struct view_event event;
     while (window_next(view->window, &event)) {
+        bool by_mouse =
+            event.kind == EVENT_MOVE || event.kind == EVENT_BUTTON || event.kind == EVENT_WHEEL;
+        if (view->replay && by_mouse)
+            continue; /* between a replay's press and release it would move the pointer away */
         if (!view->replay)
             record_event(view, &event);
         input_event(view, &event);

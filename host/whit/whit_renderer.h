@@ -216,7 +216,7 @@ WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double ti
    time_stages and sliders, and nothing else; the camera's name is borrowed until the next call. The
    picture is that of a renderer made with these params, byte for byte. WHIT_ERROR_USAGE and others
    as of whit_renderer_create. Params out of range leave the former view and picture; after other
-   errors, that of a camera that does not exist included, the renderer may have no picture, and
+   errors, those of a camera included, the renderer may have no picture, and
    whit_renderer_render gives WHIT_ERROR_USAGE until a call succeeds. */
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
                                               const whit_renderer_params *params);

@@ -31,6 +31,7 @@ foreach(package Threads Vulkan assimp glslang SPIRV-Tools-opt PNG JPEG OpenEXR P
   set(CMAKE_DISABLE_FIND_PACKAGE_${package} ON)
 endforeach()
 find_package(whit REQUIRED CONFIG COMPONENTS shared)
+find_package(whit REQUIRED CONFIG COMPONENTS check shared)
 if(NOT TARGET whit::whit_shared)
   message(FATAL_ERROR "no target")
 endif()

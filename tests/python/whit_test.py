@@ -137,6 +137,7 @@ def test_what_goes_wrong_says_why(renderer, tmp_path):
         whit.Scene("nowhere.stl")
     assert raised.value.result == whit.Result.ERROR_INPUT
     scene = whit.Scene(CUBE)
+    whit.Renderer(scene, camera={"name": "0", "fov_y_degrees": None}).render()
     with pytest.raises(whit.Error, match="camera .nobody.: the scene has 1 cameras"):
         whit.Renderer(scene, camera="nobody")
     with pytest.raises(whit.Error) as raised:

@@ -443,6 +443,15 @@ TEST_IN(claims_of_endless_memory_are_refused, fixture_begin, fixture_end)
         "property float y\nproperty float z\nelement face 4000000000\n"
         "property list uchar int vertex_indices\nend_header\n0123456789");
     fixture_refused(path, ".ply:3: 4000000000 elements, but only 10 bytes behind the header");
+    path = put_text("b.ply", "ply\nformat ascii 1.0\nelement vertex 300000000\nproperty float x\n"
+                             "end_header");
+    fixture_refused(path, ".ply:3: 300000000 elements, but only 0 bytes behind the header");
+    path =
+        put_text("c.ply", "ply\nformat ascii 1.0\nelement empty 4000000000\nelement vertex 3\n"
+                          "property float x\nproperty float y\nproperty float z\nelement face 1\n"
+                          "property list uchar int vertex_indices\nend_header\n"
+                          "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    assert_int_equal(fixture_load(path), WHIT_OK);
 }
 
 /* A word of 32 characters is one word: nothing is missing of the element of that name. */

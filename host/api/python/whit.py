@@ -516,6 +516,7 @@ class _Progress:
 def _camera_of(camera):
     """Members of whit_camera: of a name or number, of four values, or as they are."""
     if isinstance(camera, dict):
+        camera = {key: value for key, value in camera.items() if value is not None}
         return {"own": bool(camera.keys() - {"name"}), **camera}
     if camera is None:
         return {}
