@@ -49,8 +49,8 @@ static bool read_interpolation(const struct gltf *gltf, const json_t *sampler,
     return true;
 }
 
-/* Reads the sampler's times and values into *out, which owns them, also on failure. scene_freeze
-   checks the times. *usable: the channel can be played as far as it is not about them. */
+/* Reads the sampler's times and values into *out, which owns them, also on failure. *usable: the
+   channel can be played; only then its memory is counted. */
 static bool read_sampler(const struct gltf *gltf, const json_t *sampler,
                          const struct gltf_place *at, uint32_t components,
                          struct scene_channel *out, bool *usable)
@@ -65,8 +65,11 @@ static bool read_sampler(const struct gltf *gltf, const json_t *sampler,
     if (!gltf_read_floats(gltf, input, 1, &out->times_s, &out->key_count) ||
         !gltf_read_floats(gltf, output, components, &out->values, &values))
         return false;
-    *usable &= values == (uint64_t)out->key_count * (out->interpolation == SCENE_CUBIC ? 3 : 1);
-    return scene_afford(gltf->scene,
+    *usable = *usable &&
+              values == (uint64_t)out->key_count * (out->interpolation == SCENE_CUBIC ? 3 : 1) &&
+              scene_can_play(gltf->scene, out);
+    return !*usable ||
+           scene_afford(gltf->scene,
                         (out->key_count + (uint64_t)values * components) * sizeof(float),
                         "%s of %u keys", at->text, out->key_count);
 }
@@ -96,7 +99,6 @@ static whit_result add_channel(struct gltf *gltf, const json_t *object, const js
     uint8_t bit = (uint8_t)(1u << target.path);
     bool doubled = played->paths[target.node] & bit;
     bool fixed = gltf->scene->nodes[channel.node].has_matrix;
-    played->paths[target.node] |= bit;
     played->doubled += doubled;
     played->unplayable += fixed;
     if (doubled || fixed)
@@ -110,6 +112,7 @@ static whit_result add_channel(struct gltf *gltf, const json_t *object, const js
         free(channel.values);
         return read ? WHIT_OK : WHIT_ERROR_INPUT;
     }
+    played->paths[target.node] |= bit;
     return scene_add_channel(gltf->scene, channel) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
 }
 
@@ -146,8 +149,9 @@ static void note_unplayed(const struct gltf *gltf, const struct played *played)
                    name, played->doubled);
     if (played->unusable)
         scene_note(gltf->scene, SCENE_NOTE_WARNING,
-                   "%s: %u animation channels are not played: their interpolation is unknown, or "
-                   "their values are not as many as their times need",
+                   "%s: %u animation channels are not played: their interpolation is unknown, "
+                   "their times do not increase, or their values are not finite or not as many as "
+                   "their times need",
                    name, played->unusable);
 }
 
@@ -206,12 +210,14 @@ whit_result gltf_add_animations(struct gltf *gltf)
     const json_t *animations = json_object_get(gltf->root, "animations");
     struct played played = {.paths = array_alloc_zeroed(gltf->node_count, 1)};
     whit_result result = played.paths ? WHIT_OK : WHIT_ERROR_MEMORY;
-    uint32_t first, others = 0;
+    uint32_t first, others = 0, before = gltf->scene->channel_count;
     char names[256] = "";
     if (result == WHIT_OK && !find_clip(gltf, wanted, &first))
         result = WHIT_ERROR_INPUT;
     for (uint32_t i = 0; result == WHIT_OK && i < gltf_count(gltf, "animations"); i++) {
         bool other = is_other_clip(gltf, json_array_get(animations, i), &played);
+        if (!wanted && gltf->scene->channel_count == before)
+            first = i; /* what comes before it has no channel that is played */
         if (wanted ? i == first : !other)
             result = add_animation(gltf, i, &played);
         else
@@ -221,9 +227,11 @@ whit_result gltf_add_animations(struct gltf *gltf)
     if (result == WHIT_OK)
         note_unplayed(gltf, &played);
     if (result == WHIT_OK && others)
-        scene_note(gltf->scene, SCENE_NOTE_INFO, "%s: animation `%s` is played; %s %s not",
-                   path_name(gltf->request->path), text_token(clip_name(animations, first)).text,
-                   names, others == 1 ? "is" : "are");
+        scene_note(gltf->scene, SCENE_NOTE_INFO, "%s: %sanimation `%s` is played; %s %s not",
+                   path_name(gltf->request->path),
+                   gltf->scene->channel_count == before ? "nothing of " : "",
+                   text_token(clip_name(animations, first)).text, names,
+                   others == 1 ? "is" : "are");
     free(played.paths);
     return result;
 }

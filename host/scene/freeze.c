@@ -46,30 +46,12 @@ static whit_result check_nodes(struct scene *scene)
     return WHIT_OK;
 }
 
-static bool usable_channel(const struct scene *scene, const struct scene_channel *channel)
-{
-    if (channel->node >= scene->node_count || !channel->key_count || !channel->times_s ||
-        !channel->values)
-        return false;
-    size_t values = (size_t)channel->key_count * scene_channel_width(channel);
-    for (uint32_t i = 0; i < channel->key_count; ++i) {
-        if (!isfinite(channel->times_s[i]) ||
-            (i && !(channel->times_s[i] > channel->times_s[i - 1])))
-            return false;
-    }
-    for (size_t i = 0; i < values; ++i) {
-        if (!isfinite(channel->values[i]))
-            return false;
-    }
-    return true;
-}
-
 static void check_channels(struct scene *scene)
 {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < scene->channel_count; ++i) {
         struct scene_channel *channel = &scene->channels[i];
-        if (usable_channel(scene, channel)) {
+        if (scene_can_play(scene, channel)) {
             scene->channels[kept++] = *channel;
             continue;
         }

@@ -321,6 +321,24 @@ uint32_t scene_add_channel(struct scene *scene, struct scene_channel channel)
     return SCENE_NONE;
 }
 
+bool scene_can_play(const struct scene *scene, const struct scene_channel *channel)
+{
+    if (channel->node >= scene->node_count || !channel->key_count || !channel->times_s ||
+        !channel->values)
+        return false;
+    size_t values = (size_t)channel->key_count * scene_channel_width(channel);
+    for (uint32_t i = 0; i < channel->key_count; ++i) {
+        if (!isfinite(channel->times_s[i]) ||
+            (i && !(channel->times_s[i] > channel->times_s[i - 1])))
+            return false;
+    }
+    for (size_t i = 0; i < values; ++i) {
+        if (!isfinite(channel->values[i]))
+            return false;
+    }
+    return true;
+}
+
 char *scene_text(struct scene *scene, const char *text)
 {
     char *copy = string_copy(text);

@@ -324,6 +324,9 @@ bool scene_find_texture(const struct scene *scene, const char *name, uint32_t *i
 uint32_t scene_add_light(struct scene *scene, struct scene_light light);
 uint32_t scene_add_camera(struct scene *scene, struct scene_camera camera);
 uint32_t scene_add_channel(struct scene *scene, struct scene_channel channel);
+/* Whether scene_freeze will keep the channel: its node is there, its times increase, and times and
+   values are finite. */
+bool scene_can_play(const struct scene *scene, const struct scene_channel *channel);
 /* A copy of `text` for one of the scene's records. NULL where `text` is NULL or memory ran out; in
    the latter case scene_freeze will fail. */
 char *scene_text(struct scene *scene, const char *text);
