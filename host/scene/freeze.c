@@ -181,35 +181,35 @@ static whit_result check_mesh(struct scene *scene, uint32_t index)
     return freeze_clean_mesh(scene, index);
 }
 
-/* World matrices of nodes without animation, to find instances that cannot be placed. `animated`
-   nodes are checked by scene_pose_init at their time. */
-struct still_node {
-    struct affine world;
-    bool animated;
-};
-
-static struct still_node *still_nodes(const struct scene *scene)
+/* World matrices by what stands still, to find instances that cannot be placed at any time: what
+   channels move is left out, scene_pose_init checks it at its time. */
+static struct affine *still_nodes(const struct scene *scene)
 {
-    struct still_node *still = array_alloc_zeroed(scene->node_count, sizeof *still);
-    if (!still)
-        return NULL;
-    for (uint32_t i = 0; i < scene->channel_count; ++i)
-        still[scene->channels[i].node].animated = true;
-    for (uint32_t i = 0; i < scene->node_count; ++i) {
+    struct affine *still = array_alloc(scene->node_count, sizeof *still);
+    uint8_t *moved = array_alloc_zeroed(scene->node_count, sizeof *moved); /* bits of scene_path */
+    for (uint32_t i = 0; moved && i < scene->channel_count; ++i)
+        moved[scene->channels[i].node] |= (uint8_t)(1u << scene->channels[i].path);
+    for (uint32_t i = 0; still && moved && i < scene->node_count; ++i) {
         const struct scene_node *node = &scene->nodes[i];
-        still[i].world = node->has_matrix
-                             ? node->matrix
-                             : affine_from_trs(node->translation, node->rotation, node->scale);
-        if (node->parent == SCENE_NONE)
-            continue;
-        const struct still_node *parent = &still[node->parent];
-        still[i].world = affine_multiply(&parent->world, &still[i].world);
-        still[i].animated = still[i].animated || parent->animated;
+        bool scaled = moved[i] >> SCENE_PATH_SCALE & 1;
+        bool shifted = moved[i] >> SCENE_PATH_TRANSLATION & 1;
+        still[i] = node->has_matrix && !moved[i]
+                       ? node->matrix
+                       : affine_from_trs(shifted ? (const double[3]){0, 0, 0} : node->translation,
+                                         node->rotation,
+                                         scaled ? (const double[3]){1, 1, 1} : node->scale);
+        if (node->parent != SCENE_NONE)
+            still[i] = affine_multiply(&still[node->parent], &still[i]);
     }
+    if (!moved) {
+        free(still);
+        still = NULL;
+    }
+    free(moved);
     return still;
 }
 
-static bool keep_instance(struct scene *scene, uint32_t index, const struct still_node *still,
+static bool keep_instance(struct scene *scene, uint32_t index, const struct affine *still,
                           uint32_t *empty)
 {
     const struct scene_instance *instance = &scene->instances[index];
@@ -218,11 +218,8 @@ static bool keep_instance(struct scene *scene, uint32_t index, const struct stil
         return false;
     }
     struct affine matrix = instance->has_local ? instance->local : affine_identity();
-    if (instance->node != SCENE_NONE) {
-        if (still[instance->node].animated)
-            return true;
-        matrix = affine_multiply(&still[instance->node].world, &matrix);
-    }
+    if (instance->node != SCENE_NONE)
+        matrix = affine_multiply(&still[instance->node], &matrix);
     if (scene_can_place(&matrix))
         return true;
     scene_note(scene, SCENE_NOTE_WARNING, "instance %u `%s` dropped: its transform has no inverse",
@@ -239,7 +236,7 @@ static whit_result check_instances(struct scene *scene)
         if (instance->node != SCENE_NONE && instance->node >= scene->node_count)
             return refuse(scene, "instance", i, "its node is not there");
     }
-    struct still_node *still = still_nodes(scene);
+    struct affine *still = still_nodes(scene);
     if (!still)
         return WHIT_ERROR_MEMORY;
     uint32_t kept = 0, empty = 0;

@@ -346,14 +346,18 @@ bool scene_can_place(const struct affine *matrix)
     return is_in_range(matrix) && affine_invert(matrix, &inverse) && is_in_range(&inverse);
 }
 
-/* Places an instance that is flat or a point at this time, so that it has no inverse in range, as a
-   point that is too small to be seen. */
-static void hide(struct affine *matrix)
+/* Places an instance whose scale is about zero along all axes, so that it may have no inverse in
+   range, as a point that is too small to be seen. One that is flat is left as it is: it is seen. */
+static void hide_point(struct affine *matrix)
 {
+    struct affine point = *matrix;
     for (int i = 0; i < 12; ++i) {
+        if (i % 4 != 3 && !(fabs(matrix->m[i]) <= 2 * SMALLEST_ANIMATED_SCALE))
+            return;
         if (i % 4 != 3)
-            matrix->m[i] = i % 5 == 0 ? HIDDEN_SCALE : 0.0;
+            point.m[i] = i % 5 == 0 ? HIDDEN_SCALE : 0.0;
     }
+    *matrix = point;
 }
 
 static whit_result pose_instances(const struct scene *scene, const struct affine *nodes,
@@ -362,10 +366,11 @@ static whit_result pose_instances(const struct scene *scene, const struct affine
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         const struct scene_instance *instance = &scene->instances[i];
         struct affine matrix = instance_matrix(instance, nodes);
-        if (is_in_range(&matrix) && !scene_can_place(&matrix))
-            hide(&matrix);
+        if (!scene_can_place(&matrix))
+            hide_point(&matrix);
         if (!scene_can_place(&matrix)) {
-            log_error(&scene->log, "%s: instance %u `%s` is too large or too far away at %g s",
+            log_error(&scene->log,
+                      "%s: instance %u `%s` is flat, too large or too far away at %g s",
                       scene->name, i, text_token(instance->name).text, pose->time_s);
             return WHIT_ERROR_INPUT;
         }

@@ -6,10 +6,10 @@
 
 /* Whether an instance can have this matrix: it and its inverse exist and fit in floats. */
 bool scene_can_place(const struct affine *matrix);
-/* `scene` is frozen and outlives the pose. An instance that has no inverse in range at that time,
-   as scales of zero are nested, is a point too small to be seen. WHIT_ERROR_USAGE for a time that
-   is not finite, WHIT_ERROR_INPUT when an instance is too large or too far away at that time (named
-   in the log), WHIT_ERROR_MEMORY. */
+/* `scene` is frozen and outlives the pose. An instance whose scale is about zero along all axes
+   at that time, without an inverse in range as scales of zero are nested, is a point too small to
+   be seen. WHIT_ERROR_USAGE for a time that is not finite, WHIT_ERROR_INPUT when an instance is
+   flat, too large or too far away at that time (named in the log), WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result scene_pose_init(const struct scene *scene, double time_s,
                                        struct scene_pose *pose);
 /* World bounds of all instances but floors (flat ones wider than the rest); where the scene has

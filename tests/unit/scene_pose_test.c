@@ -172,6 +172,33 @@ TEST(nested_scales_of_zero_hide_an_instance)
     assert_near(matrix_at(scene, 1.0).m[0], 1.0);
 }
 
+/* A box that stands flat, below a node that turns or grows: it would be seen, so that it is told,
+   not hidden. One that is flat for a time is refused at that time. */
+TEST(flat_instances_are_never_hidden)
+{
+    static const float turn[] = {0, 0, 0, 1, 0, 1, 0, 0}, grow[] = {0, 0, 0, 1, 1, 1};
+    for (int i = 0; i < 2; ++i) {
+        own_scene *scene = raw_scene(i ? SCENE_PATH_ROTATION : SCENE_PATH_SCALE, SCENE_LINEAR,
+                                     (float[]){0, 1}, 2, i ? turn : grow, i ? 8 : 6);
+        scene->nodes[0].scale[2] = 0.0;
+        assert_int_equal(scene_freeze(scene), WHIT_OK);
+        assert_int_equal(scene->instance_count, 0);
+        assert_true(scene_noted(scene, "`box` dropped: its transform has no inverse"));
+    }
+    own_scene *folded = scene_begin(NULL, "test");
+    uint32_t node = SCENE_NONE;
+    for (uint32_t i = 0; i < 6; ++i) {
+        node = scene_put_node(folded, node, 0, 0, 0);
+        scene_put_channel(folded, node, SCENE_PATH_SCALE, 2, (float[]){0, 1},
+                          (float[]){1, 1, 1, 1, 1, 0});
+    }
+    scene_put(folded, mesh_box(2, 2, 2), &(struct put){.node = &node});
+    scene_ready(folded);
+    struct scene_pose pose;
+    assert_near(matrix_at(folded, 0.0).m[10], 1.0);
+    assert_int_equal(scene_pose_init(folded, 1.0, &pose), WHIT_ERROR_INPUT);
+}
+
 TEST(unordered_times_are_dropped)
 {
     const float times[] = {0, 0}, values[] = {5, 0, 0, 6, 0, 0};
