@@ -38,6 +38,8 @@ expect 0 "the same time" render "$SWARM" --frames 8-8 -o d.###.pfm --size 64x48 
 check "frame 4 of 12 a second is frame 8 of 24" cmp c.4.pfm d.008.pfm
 expect 0 "past the end" render "$SCENES/spin.json" --frames 95-98 -o e.##.png --size 8x8
 check "says so" grep -q "the animation ends at 4 s: nothing moves in frames 96 to 98" "$OUT/stderr"
+expect 0 "frames of a scene that never moves" render "$CUBE" --size 8x8 --frames 0-1 -o t.#.png
+check "say nothing of an animation" test "$(grep -c animation "$OUT/stderr")" -eq 0
 refuse 2 "--fps alone" "--fps is for --frame and --frames" render "$SWARM" --fps 12 -o r.#.png
 refuse 2 "of a scene" "--fps is for --frame" scene "$SWARM" --fps 12
 mkdir "run#1"

@@ -256,7 +256,7 @@ static void note_still(const struct job *job, const struct frames *frames)
     whit_scene_info scene;
     whit_scene_get_info(job->scene, &scene);
     double still = fmax(ceil(scene.time_end_s * job->settings.fps - 1e-6), frames->first);
-    if (still < frames->last && !job->settings.quiet)
+    if (scene.channel_count > 0 && still < frames->last && !job->settings.quiet)
         cli_note("the animation ends at %.4g s: nothing moves in frames %.0f to %u",
                  scene.time_end_s, still, frames->last);
 }

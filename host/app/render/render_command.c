@@ -492,9 +492,10 @@ static whit_result render_one(struct job *job, const struct render_request *requ
 static void say_written(const struct job *job, const struct render_request *request,
                         const struct frames_progress *progress, const struct sequence *sequence)
 {
-    if (!cli_cancel && !job->settings.quiet)
-        cli_note("%u of %u %s were written", sequence->written + sequence->kept, progress->count,
-                 request->cameras.file ? "views" : "frames");
+    if (cli_cancel || job->settings.quiet)
+        return;
+    cli_note("%u of %u %s were written", sequence->written + sequence->kept, progress->count,
+             request->cameras.file ? "views" : "frames");
     cli_say_next();
 }
 

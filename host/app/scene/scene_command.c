@@ -45,10 +45,11 @@ static int work(struct job *job, const struct scene_request *request)
         return receipt_run(job, request->json);
     if (request->kernels)
         return kernels_run(job, request->json);
-    if (job->settings.picture.time_s != 0.0 && !request->triangles)
+    whit_scene_get_info(job->scene, &info);
+    if (job->settings.picture.time_s != 0.0 && info.channel_count > 0 && !request->triangles &&
+        !job->settings.quiet)
         cli_note("places are listed as they are at 0 s: --time is for --triangles, --effects and "
                  "--kernels");
-    whit_scene_get_info(job->scene, &info);
     if (request->json)
         return listing_print_json(job, &info);
     return job->settings.quiet ? EXIT_FINE : listing_print_text(job, &info, request->all);
