@@ -13,7 +13,7 @@ int describe_complete(const struct cli_command *const *commands, uint32_t count,
 /* Prints the options of all commands as a table of Markdown, for docs/cli.md. */
 int describe_table(const struct cli_command *const *commands, uint32_t count);
 /* Writes whit.1 and a page for each command, whit-COMMAND.1, into an existing folder. */
-/* What `whit FILE` does, in two lines. */
+/* Two lines of help that explain `whit FILE`, a file in place of a command. */
 extern const char *const describe_file;
 int describe_manual(const struct cli_command *const *commands, uint32_t count, const char *folder);
 

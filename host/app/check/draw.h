@@ -49,7 +49,7 @@ WHIT_CHECK whit_result studio_draw(struct studio *studio, uint32_t index, bool c
 void drawing_finish(struct drawing *drawing);
 /* The case's own settings, with those of the command line that hold for all cases. */
 struct settings studio_settings(const struct studio *studio, const struct check_case *item);
-/* What the studio has drawn a case with, as input of trial_draw. */
+/* The job with which the studio drew `drawing`, a picture of the case: what trial_draw takes. */
 struct job studio_input(const struct studio *studio, const struct check_case *item,
                         const struct drawing *drawing);
 /* Whether hits and colours of two pictures are the same bytes. */

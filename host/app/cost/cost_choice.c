@@ -6,6 +6,8 @@
 
 #include "app/cost/cost_choice.h"
 #include "app/cost/cost_kept.h"
+#include "base/array.h"
+#include "base/sample.h"
 
 enum { SAMPLES = 16, TRIALS = 5, TRIES = 6, EDGE_TRIES = 2, EDGE_SAMPLES_MAX = 64 };
 static const double EDGE_BUDGET_MAX_MS = 10e3;
@@ -201,12 +203,6 @@ static whit_result find_within(const struct choosing *choosing, struct cost_kept
 
 /* ---- Smooth edges for what is left of a time ---- */
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static float displayed(float value)
 {
     return fminf(fmaxf(value, 0.0f), 1.0f);
@@ -234,7 +230,7 @@ static float contrast_of(const whit_image *image, const whit_image_info *info, u
 
 /* Gives the contrasts of all pixels of the renderer's picture, in rising order. *out is the
    caller's. */
-static whit_result sort_contrasts(whit_renderer *renderer, float **out, size_t *count)
+static whit_result sort_contrasts(whit_renderer *renderer, double **out, uint32_t *count)
 {
     whit_image *image = NULL;
     whit_image_info info;
@@ -242,15 +238,14 @@ static whit_result sort_contrasts(whit_renderer *renderer, float **out, size_t *
     if (result != WHIT_OK)
         return result;
     whit_image_get_info(image, &info);
-    *count = (size_t)info.width * info.height;
-    *out = malloc(*count * sizeof **out);
-    for (size_t i = 0; *out && i < *count; ++i)
-        (*out)[i] =
-            contrast_of(image, &info, (uint32_t)(i % info.width), (uint32_t)(i / info.width));
+    *count = info.width * info.height;
+    *out = array_alloc(*count, sizeof **out);
+    for (uint32_t i = 0; *out && i < *count; ++i)
+        (*out)[i] = (double)contrast_of(image, &info, i % info.width, i / info.width);
     whit_image_destroy(image);
     if (!*out)
         return cli_no_memory();
-    qsort(*out, *count, sizeof **out, compare_floats);
+    sample_sort(*out, *count);
     return WHIT_OK;
 }
 
@@ -299,9 +294,8 @@ static whit_result smooth_edges(const struct choosing *choosing, struct cost_kep
 {
     const double budget_ms = best->budget_ms, aim_ms = COST_ROOM * budget_ms;
     struct cost_kept_choice tried = *best;
-    float *contrasts = NULL;
-    double least_ms = 0.0;
-    size_t count = 0;
+    double *contrasts = NULL, least_ms = 0.0;
+    uint32_t count = 0;
     tried.choice.samples = power_of_4_below(best->choice.samples);
     whit_result result = set_choice(choosing, &tried.choice);
     if (result == WHIT_OK)
@@ -312,8 +306,8 @@ static whit_result smooth_edges(const struct choosing *choosing, struct cost_kep
     double least_used_ms =
         best->choice.samples == tried.choice.samples ? best->tried_ms : LEAST_USED * best->tried_ms;
     for (int i = 0; result == WHIT_OK && share > 0.0 && i < EDGE_TRIES; ++i) {
-        size_t at = count - (size_t)fmin(share * (double)count, (double)(count - 1)) - 1;
-        tried.choice.contrast = ceil(fmax(contrasts[at], CONTRAST_MIN) * 1e3) / 1e3;
+        double contrast = sample_quantile(contrasts, count, 1.0 - fmin(share, 1.0));
+        tried.choice.contrast = ceil(fmax(contrast, CONTRAST_MIN) * 1e3) / 1e3;
         result = set_choice(choosing, &tried.choice);
         if (result == WHIT_OK)
             result = time_whole(choosing, &tried.tried_ms);

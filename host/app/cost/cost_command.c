@@ -112,8 +112,8 @@ static void complete(struct cost *cost)
     const double limits[] = {[COST_UNDER] = cost->under, [COST_WITHIN] = cost->within_ms};
     for (enum cost_goal_kind kind = COST_UNDER; kind <= COST_WITHIN; ++kind)
         if (limits[kind] > 0.0)
-            request->goals[request->goal_count++] =
-                (struct cost_goal){kind, (enum cost_metric)cost->metric, limits[kind], 0.0};
+            request->goals[request->goal_count++] = (struct cost_goal){
+                .kind = kind, .metric = (enum cost_metric)cost->metric, .limit = limits[kind]};
     if (cost->html)
         cost_strip_ask(request);
 }

@@ -15,7 +15,7 @@ struct refine_goal {
     double limit_ms; /* limit on the time of drawing; a step that would exceed it is not begun */
 };
 
-/* What refining ended with: now.samples 0: --refine was not given. */
+/* The state in which refining ended. now.samples is 0 where --refine was not given. */
 struct refined {
     whit_refine_info now;
     bool reached; /* whether the goal was reached */
