@@ -60,25 +60,25 @@ bool adaptive_draws(const struct progress *progress, size_t index)
 }
 
 whit_result adaptive_list(struct target *target, const struct progress *progress,
-                          struct gpu_chunk *chunk)
+                          uint32_t first_block, uint32_t end_block, uint32_t *count)
 {
     struct renderer *renderer = target->renderer;
-    chunk->listed = 0;
-    uint32_t slots = chunk->block_count * RENDER_BLOCK_PIXELS;
-    uint32_t *list = array_alloc(slots, sizeof *list);
+    uint32_t *list =
+        array_alloc((size_t)(end_block - first_block) * RENDER_BLOCK_PIXELS, sizeof *list);
+    *count = 0;
     if (!list)
         return render_no_memory(renderer, "a list of pixels");
-    for (uint32_t slot = 0; slot < slots; ++slot) {
-        uint32_t x, y;
-        if (render_slot_pixel(renderer, chunk->first_block + slot / RENDER_BLOCK_PIXELS,
-                              slot % RENDER_BLOCK_PIXELS, &x, &y) &&
-            adaptive_draws(progress, (size_t)y * renderer->params.width + x))
-            list[chunk->listed++] = slot;
+    for (uint32_t block = first_block; block < end_block; ++block) {
+        for (uint32_t i = 0; i < RENDER_BLOCK_PIXELS; ++i) {
+            uint32_t x, y;
+            if (render_slot_pixel(renderer, block, i, &x, &y) &&
+                adaptive_draws(progress, (size_t)y * renderer->params.width + x))
+                list[(*count)++] = x | y << LISTED_Y_SHIFT;
+        }
     }
     whit_result result = WHIT_OK;
-    if (chunk->listed > 0)
-        result =
-            buffer_write(target->buffers.listed, 0, list, (uint64_t)chunk->listed * sizeof *list);
+    if (*count > 0)
+        result = buffer_write(target->buffers.listed, 0, list, (uint64_t)*count * sizeof *list);
     free(list);
     return result;
 }

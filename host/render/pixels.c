@@ -98,8 +98,7 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
         {&p->distances, renderer->views.count && !target->probed ? pixels * 4 : 0,
          BUFFER_STORAGE | BUFFER_HOST, "distances"},
         {&p->status, 16, BUFFER_STORAGE | BUFFER_HOST, "status"},
-        {&p->listed, lists ? (uint64_t)p->chunk_slots * 4 : 0, BUFFER_STORAGE | BUFFER_HOST,
-         "listed pixels"},
+        {&p->listed, lists ? pixels * 4 : 0, BUFFER_STORAGE | BUFFER_HOST, "listed pixels"},
     };
     whit_result result =
         buffer_create_all(device, all, sizeof all / sizeof *all, &renderer->scene_buffers.bytes);

@@ -46,30 +46,20 @@ static whit_result create_buffers(struct target *probe)
     return result;
 }
 
-/* The place of pixel (x, y) in its block: the inverse of render_slot_pixel. */
-static uint32_t slot_of_pixel(uint32_t x, uint32_t y)
-{
-    x %= 8;
-    y %= 8;
-    return (x & 3) | (x & 4) << 1 | (y & 1) << 2 | (y & 6) << 3;
-}
-
 static whit_result trace_pixel(struct target *target, struct probe_report *report)
 {
     struct renderer *renderer = target->renderer;
     const whit_renderer_params *params = &renderer->params;
     uint32_t block_y = report->y / 8, rows = params->height - block_y * 8;
-    struct gpu_chunk chunk = {.first_block =
-                                  block_y * pixels_blocks_across(params->width) + report->x / 8,
-                              .block_count = 1,
+    struct gpu_chunk chunk = {.block_count = 1,
                               .blocks_x = pixels_blocks_across(params->width),
                               .band_y = block_y * 8,
                               .band_rows = rows < 8 ? rows : 8,
                               .listed = 1};
     const struct progress progress = {.share = 1.0, .work_total = 1};
     double longest_ms = 0.0;
-    const uint32_t slot = slot_of_pixel(report->x, report->y);
-    whit_result result = buffer_write(target->buffers.listed, 0, &slot, sizeof slot);
+    const uint32_t pixel_word = report->x | report->y << LISTED_Y_SHIFT;
+    whit_result result = buffer_write(target->buffers.listed, 0, &pixel_word, sizeof pixel_word);
     target->buffers.band_y = chunk.band_y;
     for (uint32_t s = 0; result == WHIT_OK && s < report->samples; ++s) {
         result = render_stop_asked(renderer, &progress);

@@ -52,7 +52,7 @@ struct pixel_buffers {
                               from `before_post` on, the pixels as a user's post() is given them */
     struct buffer *ids;
     struct buffer *costs;  /* costs of a chunk: RAY_KIND_COUNT a slot; NULL: not counted */
-    struct buffer *listed; /* slots whose camera rays are traced; NULL: all slots */
+    struct buffer *listed; /* pixels of the band that a pass draws; NULL: passes draw all */
     struct buffer *status;
     struct buffer *aovs;      /* see bind/queues.glsl; NULL: the shader has no aov */
     struct buffer *distances; /* NULL: the picture has one camera */
@@ -159,8 +159,8 @@ struct progress {
     uint64_t work_done, work_total; /* samples of blocks in this pass */
     double before, share;           /* shares of the picture, 0..1: earlier passes, this pass */
     uint32_t samples;               /* samples of a pixel in this pass */
-    bool listed;                    /* draws only the pixels whose level asks for `samples` */
-    bool aovs_alone;                /* draws aovs only; colours and ids stay */
+    uint64_t listed; /* pixels that the pass draws, whose level asks for `samples`; 0: all */
+    bool aovs_alone; /* draws aovs only; colours and ids stay */
     uint8_t *levels; /* by pixel: base-4 logarithm of its samples; NULL: not adaptive */
 };
 

@@ -11,6 +11,7 @@
 #include "render/renderer.h"
 #include "render/stage_times.h"
 #include "render/stages.h"
+#include "render/tiles.h"
 
 /* One tile in TIMED_ONE_IN is timed, by a hash of its number, so that they make no pattern in the
    picture; and always the second. The first never is: drivers that make machine code at the first
@@ -102,7 +103,7 @@ whit_result stage_times_end(struct target *target, const struct gpu_chunk *chunk
                             uint32_t generations, uint32_t deferred)
 {
     struct stage_times *times = &target->stages.times;
-    uint64_t pixels = chunk->listed ? chunk->listed : chunk->block_count * RENDER_BLOCK_PIXELS;
+    uint64_t pixels = render_slots(chunk);
     add_items(target, RENDER_STAGE_CAMERA, pixels);
     add_items(target, RENDER_STAGE_RESOLVE, pixels);
     add_items(target, RENDER_STAGE_DEFERRED, deferred);

@@ -9,7 +9,6 @@
 #include "base/vec.h"
 #include "device/buffer.h"
 #include "device/commands.h"
-#include "render/adaptive_samples.h"
 #include "render/costs.h"
 #include "render/hooks.h"
 #include "render/queues.h"
@@ -403,15 +402,9 @@ whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
     struct gpu_chunk part = *chunk;
     target->stages.blocks_max = max;
     for (; result == WHIT_OK && part.first_block < end;
-         part.first_block += max, part.sums_row += max * RENDER_BLOCK_PIXELS) {
+         part.first_block += max, part.tile_slot += max * RENDER_BLOCK_PIXELS) {
         part.block_count = end - part.first_block < max ? end - part.first_block : max;
-        if (progress->listed)
-            result = adaptive_list(target, progress, &part);
-        if (result == WHIT_OK && (!progress->listed || part.listed > 0))
-            result = stages_sample(target, &part, progress, longest_ms);
+        result = stages_sample(target, &part, progress, longest_ms);
     }
-    part = *chunk;
-    if (result == WHIT_OK && progress->listed) /* the whole list, for the next sample */
-        result = adaptive_list(target, progress, &part);
     return result;
 }

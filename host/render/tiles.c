@@ -187,10 +187,16 @@ void render_push_chunk(struct renderer *renderer, struct gpu_chunk *chunk)
     commands_push(renderer->commands, chunk, sizeof *chunk);
 }
 
+uint32_t render_slots(const struct gpu_chunk *chunk)
+{
+    uint32_t slots = chunk->block_count * RENDER_BLOCK_PIXELS;
+    uint32_t left = chunk->listed - chunk->first_block * RENDER_BLOCK_PIXELS;
+    return chunk->listed && left < slots ? left : slots;
+}
+
 uint32_t render_groups(const struct gpu_chunk *chunk)
 {
-    uint32_t slots = chunk->listed ? chunk->listed : chunk->block_count * RENDER_BLOCK_PIXELS;
-    return (slots + RENDER_GROUP_SIZE - 1) / RENDER_GROUP_SIZE;
+    return (render_slots(chunk) + RENDER_GROUP_SIZE - 1) / RENDER_GROUP_SIZE;
 }
 
 bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t i, uint32_t *x,
@@ -200,6 +206,12 @@ bool render_slot_pixel(const struct renderer *renderer, uint32_t block, uint32_t
     *x = block % across * 8 + ((i & 3) | (i >> 1 & 4));
     *y = block / across * 8 + ((i >> 2 & 1) | (i >> 3 & 6));
     return *x < renderer->params.width && *y < renderer->params.height;
+}
+
+/* Number of blocks that hold `pixels` pixels of a list. The last block may be filled in part. */
+static uint32_t blocks_of(uint64_t pixels)
+{
+    return (uint32_t)((pixels + RENDER_BLOCK_PIXELS - 1) / RENDER_BLOCK_PIXELS);
 }
 
 whit_result render_finish_submission(struct target *target)
@@ -270,22 +282,8 @@ static whit_result render_chunk(struct renderer *renderer, struct gpu_chunk *chu
     return WHIT_OK;
 }
 
-/* Draws all samples of a chunk in this pass, or of its listed pixels if the pass lists pixels. */
-static whit_result pass_chunk(struct renderer *renderer, struct gpu_chunk *chunk,
-                              struct progress *progress)
-{
-    whit_result result = WHIT_OK;
-    if (progress->listed)
-        result = adaptive_list(&renderer->picture, progress, chunk);
-    if (result != WHIT_OK)
-        return result;
-    if (!progress->listed || chunk->listed > 0)
-        return render_chunk(renderer, chunk, progress);
-    progress->work_done += (uint64_t)chunk->block_count * progress->samples;
-    report_progress(renderer, progress);
-    return render_stop_asked(renderer, progress);
-}
-
+/* Draws the band whose first row is `band_y`: all its blocks, or blocks of the list of those of its
+   pixels that the pass draws. */
 static whit_result render_band(struct renderer *renderer, uint32_t band_y,
                                struct progress *progress)
 {
@@ -296,6 +294,14 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
     uint32_t across = pixels_blocks_across(lattice->width);
     renderer->picture.buffers.band_y = band_y;
     uint32_t block = band_y / 8 * across, end = block + pixels_blocks_across(rows) * across;
+    uint32_t listed = 0;
+    if (progress->listed) {
+        whit_result result = adaptive_list(&renderer->picture, progress, block, end, &listed);
+        if (result != WHIT_OK)
+            return result;
+        block = 0;
+        end = blocks_of(listed);
+    }
     while (block < end) {
         uint32_t blocks = progress->tile * progress->tile / RENDER_BLOCK_PIXELS;
         uint32_t held = renderer->picture.buffers.chunk_slots / RENDER_BLOCK_PIXELS;
@@ -307,14 +313,24 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
                                   .blocks_x = across,
                                   .lattice = lattice_word(lattice),
                                   .band_y = band_y,
-                                  .band_rows = lattice->spacing_y * rows};
-        whit_result result = pass_chunk(renderer, &chunk, progress);
+                                  .band_rows = lattice->spacing_y * rows,
+                                  .listed = listed};
+        whit_result result = render_chunk(renderer, &chunk, progress);
         if (result != WHIT_OK)
             return result;
         block += chunk.block_count;
         renderer->picture.stats.tile_size = progress->tile;
     }
     return readback_band(renderer, progress, band_y, rows);
+}
+
+static uint64_t blocks_of_pass(const struct renderer *renderer, const struct progress *progress)
+{
+    const struct lattice *lattice = &progress->lattice;
+    uint32_t rows = lattice->height - renderer->params.first_row;
+    if (progress->listed)
+        return blocks_of(progress->listed) + rows / renderer->picture.buffers.band_rows;
+    return (uint64_t)pixels_blocks_across(lattice->width) * pixels_blocks_across(rows);
 }
 
 whit_result render_pass(struct renderer *renderer, uint32_t samples, struct progress *progress)
@@ -324,13 +340,14 @@ whit_result render_pass(struct renderer *renderer, uint32_t samples, struct prog
     progress->samples = samples;
     progress->work_done = 0;
     uint32_t first = renderer->params.first_row;
-    progress->work_total = (uint64_t)pixels_blocks_across(lattice->width) *
-                           pixels_blocks_across(lattice->height - first) * samples;
+    progress->work_total = blocks_of_pass(renderer, progress) * samples;
     for (uint32_t y = first; result == WHIT_OK && y < lattice->height;
          y += renderer->picture.buffers.band_rows)
         result = render_band(renderer, y, progress);
-    progress->before += progress->share;
-    progress->work_done = 0;
+    if (result == WHIT_OK) {
+        progress->before += progress->share;
+        progress->work_done = 0;
+    }
     return result;
 }
 
@@ -362,13 +379,14 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
         uint64_t marked =
             adaptive_mark(&renderer->color, params->sampling.contrast, level, progress->levels);
         renderer->picture.stats.rays_primary += marked << (2 * level);
-        progress->listed = true;
+        progress->listed = marked;
         if (marked > 0)
             result = render_pass(renderer, 1u << (2 * level), progress);
         else
             progress->before += progress->share;
     }
-    report_progress(renderer, progress);
+    if (result == WHIT_OK)
+        report_progress(renderer, progress);
     for (size_t i = 0; i < pixels; ++i)
         ++renderer->picture.stats.pixels_by_samples[progress->levels[i]];
     free(progress->levels);

@@ -37,6 +37,8 @@ void render_take_deferred(struct commands *commands, struct pipeline *pipeline,
                           uint32_t push_bytes);
 /* Records the push constants of the bound kernel, a stage. chunk->blocks_x must not be 0. */
 void render_push_chunk(struct renderer *renderer, struct gpu_chunk *chunk);
+/* Number of pixels that a chunk may have; some may be outside of the picture. */
+uint32_t render_slots(const struct gpu_chunk *chunk);
 /* Number of workgroups for the camera rays of a chunk, at one ray an invocation. */
 uint32_t render_groups(const struct gpu_chunk *chunk);
 /* The pixel at place `i` of block `block`, as slot_pixel() of the kernels. False if it is outside

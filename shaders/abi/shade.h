@@ -219,7 +219,8 @@ GPU_ASSERT_SIZE(gpu_media, 16)
    bounces so far, and above these, from frame.slot_shift on, the slot of its pixel. */
 #define STATE_BOUNCES_SHIFT 8u
 
-/* Push constants of the stages: a chunk is a run of 8x8 pixel blocks of a band of rows. */
+/* Push constants of the stages: a chunk is a run of 8x8 pixel blocks of a band of rows, or of blocks
+   of 64 pixels of a list. A slot is the place of a pixel in its chunk. */
 struct gpu_chunk {
     gpu_uint first_block;
     gpu_uint block_count;
@@ -230,7 +231,7 @@ struct gpu_chunk {
     gpu_float sample_weight;
     gpu_vec2 lens_xy; /* CAMERA_LENS: the ray starts at eye + focus_distance * (x * right +
                          y * up) */
-    gpu_uint listed;  /* number of listed slots that have camera rays; 0: all slots have */
+    gpu_uint listed;  /* pixels of the list; 0: no list */
     gpu_uint deferred; /* 1: the dispatch works on the list of deferred rays */
     gpu_uint light;   /* that the dispatch is for; in resolve.comp: the generation that must be
                          empty, or GENERATION_NONE */
@@ -239,18 +240,21 @@ struct gpu_chunk {
     gpu_uint list;                       /* LIST_* that the dispatch works on */
     gpu_uint light_index; /* in the sequence: the sample's first point on flat emitters */
     gpu_uint summed, samples; /* of a pixel in this pass: samples summed already, and all */
-    gpu_uint sums_row, sums_step; /* in the pixel buffer: slot 0's first partial sum, step to its
-                                     next */
+    gpu_uint sums_row, sums_step; /* in the pixel buffer: first partial sum of the tile's slot 0,
+                                     step to its next */
     gpu_uint blocks_x;  /* blocks in a row of the drawn part */
     gpu_uint block_row; /* first_block / blocks_x, set by render_push_chunk() */
     gpu_uint lattice;  /* LATTICE_*: which of the picture's pixels are drawn */
     gpu_uint before_post; /* HOOK_POST: in the pixel buffer, first pixel as it is before post() */
     gpu_uint aovs_alone;  /* 1: writes the aovs of pixels, no colours */
-    gpu_uint pad;
+    gpu_uint tile_slot;   /* slot 0 among those of the tile, of which the chunk may be a part */
 };
 GPU_ASSERT_SIZE(gpu_chunk, 112)
 
 #define GENERATION_NONE 0xffffffffu
+
+/* A listed pixel: x in the low bits, y from this bit on. */
+#define LISTED_Y_SHIFT 16u
 
 /* The pixels that are drawn: log2 of the step between pixels of a row, in the low bits; log2 of the
    step between rows; x and y of the first pixel. 0: all pixels. */

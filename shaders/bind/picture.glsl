@@ -10,7 +10,7 @@ layout(set = 0, binding = BIND_PIXELS, std430) buffer PixelBuffer { vec4 pixels[
 layout(set = 0, binding = BIND_IDS, std430) writeonly buffer IdBuffer { uvec2 ids[]; };
 layout(set = 0, binding = BIND_LISTED, std430) readonly buffer ListedBuffer
 {
-    uint listed_slots[]; // with chunk.listed
+    uint listed_pixels[]; // with chunk.listed: x, and y from LISTED_Y_SHIFT on
 };
 
 // With SPEC_COUNT: RAY_KIND_COUNT per slot of the chunk, for the current sample.
@@ -37,10 +37,20 @@ uint invocation_slot()
     return group * SPEC_GROUP_SIZE + gl_LocalInvocationID.x;
 }
 
+// Whether the chunk is a part of a list of pixels.
+bool is_listed()
+{
+    return SPEC_LISTED != 0u && chunk.listed != 0u;
+}
+
 // The place of a slot in the drawn part of the picture, which 8x8 blocks cover row by row. Within a
 // block a subgroup of 8 has 4 x 2 pixels.
 uvec2 slot_place(uint slot)
 {
+    if (is_listed()) {
+        uint pixel = listed_pixels[min(chunk.first_block * BLOCK_PIXELS + slot, chunk.listed - 1u)];
+        return uvec2(pixel & ((1u << LISTED_Y_SHIFT) - 1u), pixel >> LISTED_Y_SHIFT);
+    }
     uint blocks_x = chunk.blocks_x, first_y = chunk.block_row;
     // The place is less than 2^14 blocks from the start of that row. Floats divide such numbers
     // exactly enough, while lavapipe divides integers lane by lane.

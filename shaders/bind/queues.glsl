@@ -30,8 +30,8 @@ layout(set = 0, binding = BIND_HIT_LIST, std430) buffer HitListBuffer { uint hit
 layout(set = 0, binding = BIND_LIST_TEXELS) uniform usamplerBuffer list_texels;
 layout(set = 0, binding = BIND_CUT_SUMS, std430) buffer CutSumBuffer
 {
-    // Weights of the cut rays of each pixel (without SPEC_PIXEL_DATA: slot), for --depth and --bailout,
-    // over all samples so far.
+    // Weights of the cut rays of each pixel (without SPEC_PIXEL_DATA: slot of the tile), for --depth and
+    // --bailout, over all samples so far.
     vec2 cut_sums[];
 };
 layout(set = 0, binding = BIND_CUTS, std430) buffer CutBuffer
@@ -139,22 +139,18 @@ bool is_queue_full()
     return (status_word & STATUS_QUEUE_FULL) != 0u;
 }
 
-// The slot of the pixel of a camera ray.
-uint slot_of(uint id)
-{
-    return SPEC_LISTED != 0u && chunk.listed != 0u ? listed_slots[min(id, chunk.listed - 1u)] : id;
-}
-
+// The number of camera rays. Their ids are the slots of their pixels.
 uint camera_ray_count()
 {
-    return SPEC_LISTED != 0u && chunk.listed != 0u ? chunk.listed : chunk.block_count * BLOCK_PIXELS;
+    uint slots = chunk.block_count * BLOCK_PIXELS;
+    return is_listed() ? min(slots, chunk.listed - chunk.first_block * BLOCK_PIXELS) : slots;
 }
 
 // The first id of the back segment; ids of the front segment are below it. Camera rays are all in
 // front.
 uint middle_id()
 {
-    return SPEC_SEGMENTS == 2u ? (chunk.ray_capacity + chunk.block_count * BLOCK_PIXELS) / 2u
+    return SPEC_SEGMENTS == 2u ? (chunk.ray_capacity + camera_ray_count()) / 2u
                                : chunk.ray_capacity;
 }
 
@@ -217,7 +213,7 @@ Ray fetch_ray(uint id, out uint slot)
     bool queued = SPEC_SECONDARY != 0u && !is_primary();
     Ray ray;
     if (SPEC_GENERATIONS != 2u) {
-        slot = slot_of(queued ? 0u : id);
+        slot = queued ? 0u : id;
         if (SPEC_VIEWS != 0u)
             load_view(slot);
         ray = camera_ray(slot_pixel(slot));

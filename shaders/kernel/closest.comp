@@ -44,7 +44,7 @@ void take_ray(uint r)
     uint id = waited ? deferred_item(r) : traced_item(r);
     bool primary = is_primary(), alive = id != ITEM_NONE;
     id = alive ? id : 0u;
-    alive = alive && (!primary || is_in_picture(slot_place(slot_of(id))));
+    alive = alive && (!primary || is_in_picture(slot_place(id)));
     uint slot;
 #ifdef HOOKS
     record_for(id, alive && primary); // records dbg(x) in a user's camera()
@@ -94,7 +94,7 @@ bool leave_ray(uint r, bool alive)
         add_cost(ray_slot[r], ray_kind[r]);
     alive = alive && !must_wait(hit.status);
     bool met = alive && hit.primitive != HIT_NONE;
-    if (alive && primary && !(SPEC_LISTED != 0u && chunk.listed != 0u) && chunk.sample_index == 0u) {
+    if (alive && primary && !is_listed() && chunk.sample_index == 0u) {
         uvec2 at = slot_place(ray_slot[r]);
         if (SPEC_PIXEL_DATA != 0u)
             ids[(at.y - chunk.band_y) * frame.width + at.x] = uvec2(hit.instance, hit.primitive);

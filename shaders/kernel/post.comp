@@ -20,7 +20,7 @@ void main()
     load_frame();
     begin_functions();
     uint id = camera_item(0u);
-    uint slot = slot_of(id == ITEM_NONE ? 0u : id);
+    uint slot = id == ITEM_NONE ? 0u : id;
     uvec2 at = slot_place(slot);
     bool alive = id != ITEM_NONE && is_tile_done() && is_in_picture(at);
     uint pixel = alive ? (at.y - chunk.band_y) * frame.width + at.x : 0u;

@@ -62,7 +62,7 @@ void add_cuts(bool alive, uint slot, uint pixel)
     vec2 cut = vec2(0.0);
     if (alive) {
         cut = fetch_cuts(slot) * chunk.sample_weight;
-        uint at = SPEC_PIXEL_DATA != 0u ? pixel : slot; // sums of slots last while their tile is drawn
+        uint at = SPEC_PIXEL_DATA != 0u ? pixel : chunk.tile_slot + slot;
         if (chunk.summed != 0u)
             cut += cut_sums[at];
         cut_sums[at] = cut;
@@ -90,7 +90,7 @@ void add_aovs(uint slot, uint pixel)
 void resolve_pixel(uint id)
 {
     bool alive = id != ITEM_NONE;
-    uint slot = slot_of(alive ? id : 0u);
+    uint slot = alive ? id : 0u;
     uvec2 at = slot_place(slot);
     alive = alive && is_in_picture(at);
     uint pixel = (at.y - chunk.band_y) * frame.width + at.x;
@@ -108,7 +108,7 @@ void resolve_pixel(uint id)
     // as many where bit i of the number of summed samples is set. After the last sample all waiting
     // sums are added; for 2^i samples this is the same.
     bool last = chunk.summed + 1u == chunk.samples;
-    uint row = chunk.sums_row + slot;
+    uint row = chunk.sums_row + chunk.tile_slot + slot;
     for (uint waiting = chunk.summed; last ? waiting != 0u : (waiting & 1u) != 0u; waiting >>= 1) {
         if ((waiting & 1u) != 0u)
             total.rgb += pixels[row].rgb;

@@ -413,7 +413,7 @@ change(shaders/kernel/resolve.comp [[waiting = chunk.summed; last ? waiting != 0
   [[waiting = min(chunk.summed, 1u); waiting != 0u; waiting = 0u, row -= chunk.sums_step]])
 
 mutation(sums_of_parts_mixed render_samples RED full_queues_do_not_matter)
-change(host/render/stages.c [[part.first_block += max, part.sums_row += max * RENDER_BLOCK_PIXELS]]
+change(host/render/stages.c [[part.first_block += max, part.tile_slot += max * RENDER_BLOCK_PIXELS]]
   [[part.first_block += max]])
 
 mutation(points_unturned_in_kernels device_sequence RED points_are_those_of_the_host)

@@ -200,14 +200,14 @@ TEST(progress_goes_on_to_the_end)
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);
     assert_int_equal(backwards, 0);
     assert_true(last_done > 0.999 && last_done < 1.001);
-    /* The picture is cancelled in the pass of 16 samples, and then drawn as a whole. */
+    /* The picture is cancelled in the pass of 64 samples, and then drawn as a whole. */
     uint32_t stop_at = 4 * 3 + 20;
     params.cancel = &stop_now;
     params.progress_user = &stop_at;
     fixture_renew(&f, &params);
     last_done = 0.0;
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_CANCELLED);
-    assert_true(last_done > 1.0 / 3.0 && last_done < 0.9);
+    assert_true(last_done > 2.0 / 3.0 && last_done < 0.9);
     stop_now = false;
     last_done = 0.0;
     assert_int_equal(renderer_render(f.renderer), WHIT_OK);

@@ -11,9 +11,8 @@ static struct fixture f;
 static float parts[SAMPLES][FLOATS], whole[FLOATS];
 
 /* A mirror and a ball under an area light, seen through a lens: samples differ in all of these. */
-static int open_scene(void **state)
+static struct scene *scene_of_samples(void)
 {
-    (void)state;
     struct scene *scene = dark_scene((double[]){0, 1.2, 3.0}, (double[]){0, 0.2, 0});
     struct scene_material floor = matte(0.5f, 0.4f, 0.3f), ball = matte(0.7f, 0.2f, 0.1f);
     set_rgb(scene->environment.zenith, 0.3f, 0.6f, 0.9f);
@@ -29,8 +28,14 @@ static int open_scene(void **state)
                                                 .edge_v = {0, 0, 1.3},
                                                 .color = {2.1f, 1.7f, 1.3f}});
     scene->cameras[0].lens_radius = 0.15f;
+    return scene;
+}
+
+static int open_scene(void **state)
+{
+    (void)state;
     const whit_renderer_params params = {.width = WIDTH, .height = HEIGHT, .depth = 3};
-    f = fixture_open(scene, NULL, &params);
+    f = fixture_open(scene_of_samples(), NULL, &params);
     return 0;
 }
 
@@ -117,16 +122,35 @@ TEST_BY_TURNS(any_number_of_samples_is_their_mean, 0, 2)
     }
 }
 
+/* Draws with colours alone, so that weights of cut rays are summed by slot and not by pixel. */
+static whit_stats draw_colors(uint32_t ray_capacity, float *pixels)
+{
+    whit_renderer_params params = {.width = WIDTH,
+                                   .height = HEIGHT,
+                                   .depth = 3,
+                                   .bailout = 0.1,
+                                   .light_samples = 4,
+                                   .sampling.count = SAMPLES,
+                                   .color_only = true};
+    own_fixture colors = fixture_open(scene_of_samples(), NULL, &params);
+    struct target *picture = &colors.renderer->picture;
+    if (ray_capacity)
+        picture->buffers.queues.ray_capacity = ray_capacity;
+    own_image image = render(&colors);
+    assert_int_equal(picture->stages.blocks_max > 0, ray_capacity > 0);
+    memcpy(pixels, image.pixels, FLOATS * sizeof *pixels);
+    return picture->stats;
+}
+
 /* Where full queues halve a tile, each half has sums of its own, and the picture is the same. */
 TEST(full_queues_do_not_matter)
 {
     static float smaller[FLOATS];
-    draw(0, SAMPLES, 0, whole);
-    assert_int_equal(f.renderer->picture.stages.blocks_max, 0);
-    f.renderer->picture.buffers.queues.ray_capacity = 640;
-    draw(0, SAMPLES, 0, smaller);
-    assert_true(f.renderer->picture.stages.blocks_max > 0);
+    whit_stats stats = draw_colors(0, whole), halved = draw_colors(640, smaller);
     assert_memory_equal(smaller, whole, sizeof whole);
+    assert_true(stats.weight_cut_bailout > 0.0);
+    assert_true(halved.weight_cut_bailout == stats.weight_cut_bailout);
+    assert_true(halved.weight_cut_depth == stats.weight_cut_depth);
 }
 
 /* ---- Rows ---- */
