@@ -243,10 +243,11 @@ struct cost_choice cost_choose(const struct cost_report *report, const struct co
     return search.best;
 }
 
-struct cost_choice cost_choose_budget(const struct cost_report *report, double budget_ms)
+struct cost_choice cost_choose_budget(const struct cost_report *report, double budget_ms,
+                                      bool edges)
 {
     struct cost_goal goal = {
-        .kind = COST_WITHIN, .metric = COST_RMSE, .limit = COST_ROOM * budget_ms};
+        .kind = COST_WITHIN, .metric = COST_RMSE, .limit = COST_ROOM * budget_ms, .edges = edges};
     struct cost_choice choice = cost_choose(report, &goal);
     if (choice.found)
         return choice;
@@ -267,7 +268,7 @@ void cost_choice_apply(const struct cost_choice *choice, struct settings *settin
     if (choice->contrast > 0.0)
         settings->picture.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE,
                                                      .count = choice->samples,
-                                                     .count_max = 4 * choice->samples,
+                                                     .count_max = choice->samples_most,
                                                      .contrast = choice->contrast};
     if (choice->bailout > 0.0)
         settings->picture.bailout = choice->bailout;

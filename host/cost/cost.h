@@ -82,6 +82,8 @@ struct cost_goal {
     enum cost_goal_kind kind;
     enum cost_metric metric;
     double limit;
+    bool edges; /* COST_WITHIN: the caller gives edges more samples in the time that is left, so
+                   fewer samples of all pixels are enough */
     double of_usual; /* > 0: `limit` is set to about this many times the usual picture's time, and
                         reports do not mention it where no settings keep it */
 };
@@ -178,15 +180,17 @@ enum { COST_SAMPLES_MAX = 256 }; /* of COST_UNDER: more than were measured are e
 struct cost_choice {
     uint8_t settings[COST_CHOICE_KNOBS]; /* by index in knob_table: index of the knob's setting */
     uint32_t samples;                    /* per pixel; 0: as the setting of knob `aa` says */
-    double contrast;  /* above 0: adaptive by it: 4 times as many samples at edges */
+    double contrast;                     /* above 0: adaptive by it, up to `samples_most` */
+    uint32_t samples_most;
     double bailout;   /* 0: as the setting of knob `bailout` says */
     double ms, error; /* predicted: wall clock at full size; by the goal's metric */
     bool found;
 };
 struct cost_choice cost_choose(const struct cost_report *report, const struct cost_goal *goal);
 /* The choice by RMSE that takes at most COST_ROOM of `budget_ms` 9 times of 10; where there is
-   none, one whose median time is within the budget. */
-struct cost_choice cost_choose_budget(const struct cost_report *report, double budget_ms);
+   none, one whose median time is within the budget. `edges`: as in cost_goal. */
+struct cost_choice cost_choose_budget(const struct cost_report *report, double budget_ms,
+                                      bool edges);
 void cost_choice_apply(const struct cost_choice *choice, struct settings *settings);
 /* Writes the choice as options of `whit render`. */
 void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes);

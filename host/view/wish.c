@@ -42,7 +42,7 @@ static struct cost_choice find_choice(const struct view *view)
     double limit = within ? asked->budget_ms / view->wish.slower : asked->max_error;
     const struct cost_goal goal = {
         .kind = within ? COST_WITHIN : COST_UNDER, .metric = COST_RMSE, .limit = COST_ROOM * limit};
-    return within && view->wish.tries == 0 ? cost_choose_budget(report, limit)
+    return within && view->wish.tries == 0 ? cost_choose_budget(report, limit, false)
                                            : cost_choose(report, &goal);
 }
 

@@ -8,8 +8,9 @@
 
 static void choose(const struct cost_report *report)
 {
-    static const struct cost_goal goals[] = {{COST_UNDER, COST_RMSE, 0.01, 0.0},
-                                             {COST_WITHIN, COST_FLIP, 20.0, 0.0}};
+    static const struct cost_goal goals[] = {
+        {.kind = COST_UNDER, .metric = COST_RMSE, .limit = 0.01},
+        {.kind = COST_WITHIN, .metric = COST_FLIP, .limit = 20.0}};
     char text[COST_SENTENCE_BYTES];
     for (size_t i = 0; i < sizeof goals / sizeof *goals; i++) {
         struct cost_choice choice = cost_choose(report, &goals[i]);

@@ -164,7 +164,8 @@ TEST(nothing_is_given_up_before_what_is_missed_less)
         make_report();
         uint32_t last = 0;
         for (double limit = 100.0 * USUAL_MS; limit > 0.005 * USUAL_MS; limit *= 0.8) {
-            const struct cost_goal goal = {COST_WITHIN, COST_RMSE, limit, 0.0};
+            const struct cost_goal goal = {
+                .kind = COST_WITHIN, .metric = COST_RMSE, .limit = limit};
             const struct cost_choice choice = cost_choose(&report, &goal);
             if (!choice.found)
                 break;
@@ -186,17 +187,43 @@ TEST(nothing_is_given_up_before_what_is_missed_less)
     assert_true(between > found / 20);
 }
 
+/* Where edges get more samples, all pixels get a power of 4, and less is given up. */
+TEST(with_edges_all_pixels_have_a_power_of_4_of_samples)
+{
+    uint32_t fewer = 0, soft_shadows = cost_step_of("light-samples", "4") + 1;
+    for (int i = 0; i < REPORTS; ++i) {
+        make_report();
+        for (double limit = 100.0 * USUAL_MS; limit > 0.005 * USUAL_MS; limit *= 0.8) {
+            struct cost_goal goal = {.kind = COST_WITHIN, .metric = COST_RMSE, .limit = limit};
+            const struct cost_choice plain = cost_choose(&report, &goal);
+            goal.edges = true;
+            const struct cost_choice edges = cost_choose(&report, &goal);
+            assert_int_equal(edges.found, plain.found);
+            if (!plain.found)
+                break;
+            assert_true(edges.samples == 1 || edges.samples == 4 || edges.samples == 16 ||
+                        edges.samples == 64);
+            assert_true(edges.ms <= limit);
+            assert_true(check_order(&edges) <= check_order(&plain));
+            fewer += check_order(&edges) < check_order(&plain);
+            if (report.usual_ms_max <= limit) /* one sample fits without this step */
+                assert_true(check_order(&edges) < soft_shadows);
+        }
+    }
+    assert_true(fewer > REPORTS);
+}
+
 /* If no setting keeps a time in 9 of 10 pictures, one is chosen that keeps it in the median. */
 TEST(a_short_budget_is_kept_in_the_median)
 {
     make_report();
     report.rows[0].ms[COST_WALL] = USUAL_MS / 1.5;
-    struct cost_goal goal = {COST_WITHIN, COST_RMSE, USUAL_MS, 0.0};
+    struct cost_goal goal = {.kind = COST_WITHIN, .metric = COST_RMSE, .limit = USUAL_MS};
     while (cost_choose(&report, &goal).found)
         goal.limit *= 0.99;
-    assert_true(cost_choose_budget(&report, goal.limit).found);
-    assert_true(cost_choose_budget(&report, goal.limit / 1.49).found);
-    assert_false(cost_choose_budget(&report, goal.limit / 1.6).found);
+    assert_true(cost_choose_budget(&report, goal.limit, false).found);
+    assert_true(cost_choose_budget(&report, goal.limit / 1.49, false).found);
+    assert_false(cost_choose_budget(&report, goal.limit / 1.6, false).found);
 }
 
 /* The RMSE of whit's pictures of a textured scene with 1, 4, 16 and 64 samples. */
@@ -227,8 +254,8 @@ TEST(other_numbers_of_samples_than_powers_of_4_are_not_predicted_too_well)
     } drawn[] = {{2, 0.068}, {3, 0.057}, {5, 0.0322}, {13, 0.0187}};
     for (size_t i = 0; i < sizeof drawn / sizeof *drawn; ++i) {
         make_samples_report(16);
-        const struct cost_goal goal = {COST_WITHIN, COST_RMSE, drawn[i].samples * 1.06 * USUAL_MS,
-                                       0.0};
+        const struct cost_goal goal = {
+            .kind = COST_WITHIN, .metric = COST_RMSE, .limit = drawn[i].samples * 1.06 * USUAL_MS};
         const struct cost_choice choice = cost_choose(&report, &goal);
         assert_int_equal(choice.samples, drawn[i].samples);
         assert_true(choice.error > 0.85 * drawn[i].rmse && choice.error < 1.05 * drawn[i].rmse);
