@@ -14,6 +14,8 @@ enum { SMALL_SHRINK = 4, SMALL_SIDE = 16, PROBES = 6 };
 /* Shares of the requested time: for references and the pictures judged by them; for the row of the
    usual settings. */
 static const double REFERENCE_SHARE = 0.35, USUAL_SHARE = 0.1;
+/* What is left of a time limit that has passed: 0 would be none. */
+static const double LEFT_MIN_S = 1e-6;
 /* Added to limits given as multiples of the usual time: four times as many samples take a little
    more than four times as long. */
 static const double OF_USUAL_ROOM = 1.2;
@@ -21,14 +23,17 @@ static const double OF_USUAL_ROOM = 1.2;
 whit_result measure_still_wanted(const struct measure *measure)
 {
     const volatile bool *cancel = measure->request->cancel;
-    return cancel && *cancel ? WHIT_ERROR_CANCELLED : WHIT_OK;
+    double limit_s = measure->request->time_limit_s;
+    if (cancel && *cancel)
+        return WHIT_ERROR_CANCELLED;
+    return limit_s > 0.0 && measure_left_s(measure) <= LEFT_MIN_S ? WHIT_ERROR_TIME_LIMIT : WHIT_OK;
 }
 
 double measure_left_s(const struct measure *measure)
 {
     double limit_s = measure->request->time_limit_s;
     double spent_s = (whit_clock_ms() - measure->start_ms) * 1e-3;
-    return limit_s > 0.0 ? fmax(limit_s - spent_s, 1e-6) : 0.0;
+    return limit_s > 0.0 ? fmax(limit_s - spent_s, LEFT_MIN_S) : 0.0;
 }
 
 /* Estimate of the time left: what is left of the requested time, or more, by the time that the last
