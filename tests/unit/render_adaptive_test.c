@@ -127,13 +127,17 @@ static void check_scene(struct scene *scene, const whit_accel_params *accel,
         print_message("  contrast %g: %u, %u and %u pixels of 4, 16 and 64\n", contrasts[i],
                       (unsigned)e.by_samples[1], (unsigned)e.by_samples[2],
                       (unsigned)e.by_samples[3]);
-        const uint32_t tiles[] = {0, 16}, bands[] = {0, 8};
-        for (int k = 0; k < (i == 0 ? 2 : 1); ++k) {
+        /* The last one has short queues, and halves its tiles. */
+        const uint32_t tiles[] = {0, 16, 0}, bands[] = {0, 8, 0}, rays[] = {0, 0, 640};
+        for (int k = 0; k < (i == 0 ? 3 : 1); ++k) {
             params.tile_size = tiles[k];
             fixture_renew(&f, &params);
-            if (bands[k])
-                f.renderer->picture.buffers.band_rows = bands[k];
+            struct pixel_buffers *p = &f.renderer->picture.buffers;
+            p->band_rows = bands[k] ? bands[k] : p->band_rows;
+            p->queues.ray_capacity = rays[k] ? rays[k] : p->queues.ray_capacity;
             check(&f, &plain[1], &e);
+            bool full = rays[k] > 0 && f.renderer->has_secondary;
+            assert_int_equal(f.renderer->picture.stages.blocks_max > 0, full);
         }
         params.tile_size = 0;
     }
