@@ -25,7 +25,7 @@ struct measure {
     double row_s;                        /* running mean of the time per row; 0: not known */
 };
 
-/* WHIT_ERROR_CANCELLED once the request's `cancel` is set, WHIT_ERROR_TIME_LIMIT after its limit. */
+/* WHIT_ERROR_CANCELLED once the request's `cancel` is set, WHIT_ERROR_TIME_LIMIT after its time. */
 whit_result measure_still_wanted(const struct measure *measure);
 /* Seconds left of time_limit_s, as the limit for renderers and references, which count from their
    own start; 0: there is no limit. */

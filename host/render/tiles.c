@@ -360,6 +360,14 @@ static uint32_t log4_up(uint32_t samples)
     return level;
 }
 
+/* Plans the next pass, with progress by samples: `done` before it, `now` in it, about `later` in
+   those behind it. */
+static void plan_pass(struct progress *progress, double done, double now, double later)
+{
+    progress->before = fmax(progress->before, done / (done + now + later));
+    progress->share = now > 0.0 ? (1.0 - progress->before) * now / (now + later) : 0.0;
+}
+
 /* sampling.count samples for all pixels; then 4 times as many for pixels that differ from a
    neighbour, and so on up to sampling.count_max. The comparison needs the whole picture, so each
    pass goes over all bands. */
@@ -373,17 +381,21 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
     uint8_t first = (uint8_t)log4_up(params->sampling.count),
             last = (uint8_t)log4_up(params->sampling.count_max);
     memset(progress->levels, first, pixels);
-    progress->share = 1.0 / (last - first + 1);
+    double done = (double)pixels * params->sampling.count;
+    plan_pass(progress, 0.0, done, done);
     whit_result result = render_pass(renderer, params->sampling.count, progress);
     for (uint8_t level = first + 1; result == WHIT_OK && level <= last; ++level) {
         uint64_t marked =
             adaptive_mark(&renderer->color, params->sampling.contrast, level, progress->levels);
         renderer->picture.stats.rays_primary += marked << (2 * level);
         progress->listed = marked;
+        double now = (double)(marked << (2 * level)), all = now;
+        for (uint8_t next = level; next < last; ++next)
+            all = now + 4.0 * all; /* as if those behind drew the same pixels */
+        plan_pass(progress, done, now, all - now);
+        done += now;
         if (marked > 0)
             result = render_pass(renderer, 1u << (2 * level), progress);
-        else
-            progress->before += progress->share;
     }
     if (result == WHIT_OK)
         report_progress(renderer, progress);

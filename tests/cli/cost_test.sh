@@ -195,6 +195,11 @@ if [ "${4:-}" = all ]; then
     check "four, and sixteen at edges ($first)" expr "$first" : "--aa adaptive:[0-9.]*,4,16$most\$"
     check "most of it ($(predicted))" holds "$(predicted) >= 700 && $(predicted) <= 900"
     check "it was measured" grep -q "measuring what settings cost" "$OUT/stderr"
+    check "nobody knows before the end how long edges take" test "$(grep -c "it will take" "$OUT/stderr")" -eq 0
+    expect 0 "without notes" render $tiny --quiet
+    check "nothing is said" test ! -s "$OUT/stderr"
+    expect 0 "tiles of another size" render $tiny --tile-size 16
+    check "have figures of their own" grep -q "measuring what settings cost" "$OUT/stderr"
     # The second run makes the same choice, even if it is slower.
     export WHIT_TEST_WRONG=noisy
     expect 0 "the second run" render $tiny

@@ -108,12 +108,16 @@ static struct cost_choice choose_first(const struct cost_report *report,
     return choice;
 }
 
-static void say_choice(const struct cost_choice *choice, double ms)
+/* `ms`: predicted time; 0: nothing is said of it. */
+static void say_choice(const struct job *job, const struct cost_choice *choice, double ms)
 {
-    char options[COST_NAME * 4];
+    char options[COST_NAME * 4], time[32] = "";
     cost_choice_text(choice, options, sizeof options);
-    cli_note("chosen: %s; predicted: %.1f ms, RMSE %.3g", options[0] ? options : "what is usual",
-             ms, choice->error);
+    if (ms > 0.0)
+        snprintf(time, sizeof time, "%.1f ms, ", ms);
+    if (!job->settings.quiet)
+        cli_note("chosen: %s; predicted: %sRMSE %.3g", options[0] ? options : "what is usual", time,
+                 choice->error);
 }
 
 /* ---- Within a time ---- */
@@ -356,8 +360,9 @@ static whit_result choose_within(const struct choosing *choosing, struct cost_ke
         cost_kept_add(kept, &found);
         cost_kept_save(kept);
     }
-    say_choice(&found.choice, found.tried_ms);
-    if (found.tried_ms > found.budget_ms)
+    say_choice(choosing->job, &found.choice, found.tried_ms);
+    choosing->progress->predicted_ms = found.tried_ms;
+    if (found.tried_ms > found.budget_ms && !choosing->job->settings.quiet)
         cli_note("it is likely to take more than %.6g ms", found.budget_ms);
     return WHIT_OK;
 }
@@ -369,7 +374,9 @@ static whit_result choose_under(const struct choosing *choosing)
     const struct cost_choice choice = choose_first(choosing->report, &choosing->before);
     if (!choice.found)
         return WHIT_ERROR_FAILED;
-    say_choice(&choice, choice.ms);
+    /* Ratios of settings that save the same rays are multiplied, so the time may be several times
+       as long as predicted. */
+    say_choice(choosing->job, &choice, 0.0);
     return set_choice(choosing, &choice);
 }
 

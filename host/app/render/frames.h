@@ -51,8 +51,9 @@ struct frames_progress {
     uint32_t done, count; /* numbers of pictures, or of samples of a picture that is refined, where
                              `count` is an estimate */
     uint32_t parts;       /* how many of these are drawn at once; 0: 1 */
-    double budget_ms;     /* budget of a picture; 0: none. A note says, once, that a picture will
-                             take longer */
+    double budget_ms;     /* budget of a picture; 0: none, or nothing is to be said of it. A note
+                             says, once, that a picture will take longer */
+    double predicted_ms;  /* of a picture with a budget */
     const whit_renderer *renderer; /* which draws the picture with a budget */
     bool said;
     uint32_t line, lines; /* the number of this piece of work, and of how many; lines 0: it is the

@@ -406,7 +406,7 @@ static bool is_told(const struct job *job)
 }
 
 static void say_done(const struct job *job, const struct render_request *request,
-                     const whit_stats *stats)
+                     double predicted_ms, const whit_stats *stats)
 {
     const struct frames *frames = &request->frames;
     char about[128] = "", part[64];
@@ -423,10 +423,10 @@ static void say_done(const struct job *job, const struct render_request *request
                 job->settings.picture.height, stats->render_ms * 1e-3, stats->mrays_per_s,
                 cli_shown(device.name));
     double budget_ms = job->settings.budget_ms;
-    if (budget_ms > 0.0)
+    bool late = stats->render_ms > budget_ms && stats->render_ms > predicted_ms;
+    if (budget_ms > 0.0 && !job->settings.quiet)
         cli_note("it took %.1f of %.6g ms%s", stats->render_ms, budget_ms,
-                 stats->render_ms > budget_ms ? ": more than predicted; --fresh measures anew"
-                                              : "");
+                 late ? ": more than predicted; --fresh measures anew" : "");
 }
 
 static whit_result draw_one(struct job *job, const struct render_request *request,
@@ -520,7 +520,7 @@ int render_draw(struct job *job, const struct render_request *request, whit_rend
     if (sequence->left)
         return EXIT_FINE;
     if (!sequence->kept || sequence->written)
-        say_done(job, request, &sequence->stats);
+        say_done(job, request, progress->predicted_ms, &sequence->stats);
     if (sequence->kept && is_told(job))
         cli_note("%s: %u finished picture%s kept", request->output, sequence->kept,
                  sequence->kept == 1 ? " was" : "s were");
@@ -544,7 +544,10 @@ static int work(struct job *job, const struct render_request *request)
     cli_progress_init(&progress.bar, job->settings.quiet);
     whit_result result = render_prepare(job, request, &progress, &renderer);
     progress.bar.start_ms = whit_clock_ms();
-    progress.budget_ms = job->settings.budget_ms;
+    /* Nothing tells before the end how many pixels of adaptive samples get more. */
+    bool foretold = !job->settings.quiet && progress.predicted_ms <= job->settings.budget_ms &&
+                    job->settings.picture.sampling.kind == WHIT_SAMPLING_FIXED;
+    progress.budget_ms = foretold ? job->settings.budget_ms : 0.0;
     progress.renderer = renderer;
     if (result == WHIT_OK) {
         status = render_draw(job, request, renderer, &progress, &sequence);
