@@ -6,6 +6,7 @@
 
 #include "api/handles.h"
 #include "image/estimate.h"
+#include "render/bailout_bound.h"
 #include "shader/program.h"
 
 /* The picture of some of the samples, as means over them, and what drawing it took. */
@@ -15,6 +16,7 @@ struct part {
     struct image aovs[SHADER_AOVS_MAX]; /* the shader's AOVs */
     uint32_t aov_count;                 /* 0 after whit_refine_begin, whose samples have no AOVs */
     whit_stats stats;
+    double unshadowed; /* the part of the bail-out's bound that does not grow with cut weights */
 };
 
 struct whit_refine {
@@ -116,6 +118,7 @@ static whit_result draw_part(const whit_refine *refine, uint32_t first, uint32_t
                                    &part->aovs[part->aov_count]);
     if (result == WHIT_OK)
         whit_renderer_get_stats(refine->renderer, &part->stats);
+    part->unshadowed = bailout_bound(refine->renderer->renderer, 0.0);
     return result;
 }
 
@@ -196,6 +199,7 @@ static void add_part(whit_refine *refine, const struct part *part)
     for (uint32_t i = 0; i < refine->mean.aov_count; ++i)
         add_half(&refine->mean.aovs[i], &part->aovs[i]);
     whit_stats_add(&part->stats, &refine->mean.stats);
+    refine->mean.unshadowed = part->unshadowed;
     refine->samples *= 2;
 }
 
@@ -317,9 +321,10 @@ void whit_refine_get_stats(const whit_refine *refine, whit_stats *stats)
     *stats = refine->mean.stats;
     if (refine->samples == 0)
         return;
-    double bailout = largest(&refine->mean.cuts, 1);
+    double bailout = largest(&refine->mean.cuts, 1), unshadowed = refine->mean.unshadowed;
     if (stats->bailout_bound > 0.0 && stats->weight_cut_bailout > 0.0)
-        stats->bailout_bound *= bailout / stats->weight_cut_bailout;
+        stats->bailout_bound =
+            unshadowed + (stats->bailout_bound - unshadowed) * bailout / stats->weight_cut_bailout;
     stats->weight_cut_bailout = bailout;
     stats->weight_cut_depth = largest(&refine->mean.cuts, 0);
     memset(stats->pixels_by_samples, 0, sizeof stats->pixels_by_samples);

@@ -147,11 +147,10 @@ static struct brought ray_max(const struct renderer *renderer, const uint8_t *wo
                               : (struct brought){-1.0, -1.0};
 }
 
-double bailout_bound(const struct renderer *renderer)
+double bailout_bound(const struct renderer *renderer, double weight)
 {
-    double cut = renderer->picture.stats.weight_cut_bailout;
     if (!(renderer->params.bailout > 0.0))
         return 0.0;
     struct brought max = ray_max(renderer, renderer->worn);
-    return max.radiance < 0.0 ? -1.0 : cut * max.radiance + max.unshadowed;
+    return max.radiance < 0.0 ? -1.0 : weight * max.radiance + max.unshadowed;
 }

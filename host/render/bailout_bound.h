@@ -4,9 +4,9 @@
 
 #include "render/renderer.h"
 
-/* By how much a pixel of the last picture may differ because of rays that --bailout cut; < 0: no
-   bound is known (emissive surfaces as points, highlights of flat emitters, a light on a
-   surface). */
-double bailout_bound(const struct renderer *renderer);
+/* By how much a pixel may differ because of --bailout, where the weights of its rays that were cut
+   sum to `weight`, with the renderer's settings; < 0: no bound is known (emissive surfaces as
+   points, highlights of flat emitters, a light on a surface). */
+double bailout_bound(const struct renderer *renderer, double weight);
 
 #endif

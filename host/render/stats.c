@@ -27,7 +27,8 @@ void renderer_get_stats(const struct renderer *renderer, whit_stats *stats)
     stats->rays_straight =
         stats->stages[RENDER_STAGE_CLOSEST].rays - stats->rays_reflected - stats->rays_refracted;
     material_shares_get(&renderer->picture, stats);
-    stats->bailout_bound = renderer->rendered ? bailout_bound(renderer) : -1.0;
+    stats->bailout_bound =
+        renderer->rendered ? bailout_bound(renderer, stats->weight_cut_bailout) : -1.0;
     if (stats->render_ms > 0.0)
         stats->mrays_per_s = (double)whit_stats_rays(stats) / stats->render_ms * 1e-3;
 }

@@ -119,6 +119,24 @@ TEST(a_refined_picture_is_that_of_as_many_samples)
     }
 }
 
+/* Only a part of the bound grows with the weights of cut rays. */
+TEST(the_bound_is_that_of_the_picture)
+{
+    whit_renderer_params params = params_of(3, 0.05);
+    whit_stats stats, drawn_stats;
+    scene_open(WHIT_SCENES_DIR "/whitted.json");
+    own_refining o = begin(&params);
+    for (int i = 0; i < 4; ++i)
+        step(&o);
+    whit_refine_get_stats(o.refine, &stats);
+    params.sampling.count = 4;
+    own_whit_renderer *renderer = renderer_of(&params);
+    own_whit_image *drawn = drawn_by(renderer);
+    whit_renderer_get_stats(renderer, &drawn_stats);
+    double bound = drawn_stats.bailout_bound;
+    assert_true(bound > 0.0 && fabs(stats.bailout_bound - bound) < 1e-5 * bound);
+}
+
 /* What surfaces get without the rays that they send on is a picture without bounces, which has the
    weights of these rays as cut by depth. */
 TEST(cut_rays_are_assumed_to_bring_what_others_bring_beside_the_light_of_lights)
