@@ -10,9 +10,9 @@ struct own {
 };
 
 /* Computes in double where a ray from about the surface of a sphere hits it again: the far end of
-   its chord. */
+   its chord. `deep`: the square of half the chord over that of the radius, < 0 for a miss. */
 static bool meets_own(const float *sphere, const struct gpu_ray *ray, double *t, double *error,
-                      double *cosine)
+                      double *cosine, double *deep)
 {
     double dd = 0.0, cd = 0.0, cc = 0.0, rr = (double)sphere[3] * (double)sphere[3], size = 0.0;
     for (int k = 0; k < 3; ++k) {
@@ -26,6 +26,7 @@ static bool meets_own(const float *sphere, const struct gpu_ray *ray, double *t,
     double half = sqrt(fmax(half2, 0.0) / dd), u = 0x1p-24;
     *t = cd / dd + half;
     *cosine = cd / sqrt(dd * cc);
+    *deep = half2 / rr;
     /* The error of the perpendicular is 8 roundings of the radius; that of the chord is larger
        where the chord is short. */
     *error = 8.0 * u * sqrt(rr / dd) * (2.0 + sqrt(rr) / (half * sqrt(dd)));
@@ -37,7 +38,7 @@ static void leave(const struct accel *accel, const float *sphere, uint32_t primi
 {
     struct gpu_ray ray = {.t_max = INFINITY};
     struct gpu_hit hit;
-    double n[3], length = 0.0, t, error, cosine;
+    double n[3], length = 0.0, t, error, cosine, deep;
     for (int k = 0; k < 3; ++k) {
         n[k] = sphere_random();
         length += n[k] * n[k];
@@ -51,13 +52,13 @@ static void leave(const struct accel *accel, const float *sphere, uint32_t primi
     }
     uint32_t status = 0;
     traverse_float(accel, ORDER_DISTANCE, &ray, false, 0, primitive, &hit, NULL, &status);
-    bool wanted = meets_own(sphere, &ray, &t, &error, &cosine);
+    bool wanted = meets_own(sphere, &ray, &t, &error, &cosine, &deep);
     /* So close to 0 the sign of the cosine, a sum of three rounded products, is not certain. */
     if (fabs(cosine) < 8.0 * 0x1p-24)
         return;
     bool met = hit.primitive == primitive;
-    /* A ray that starts slightly outside may miss the sphere if it grazes it on its way inwards. */
-    bool grazes = cosine > 0.0 && cosine * cosine <= 64.0 * 0x1p-24;
+    /* A ray that grazes the sphere on its way inwards may meet it or miss it. */
+    bool grazes = cosine > 0.0 && fabs(deep) <= 64.0 * 0x1p-24;
     own->wrong += met != wanted && !grazes;
     own->met += met;
     own->missed += !met;
