@@ -151,7 +151,7 @@ static int open_below(const char *folder, const char *part, bool read, enum reac
     return fd;
 }
 
-static int follow(const struct roots *roots, const char *path, bool read, enum reach *reach)
+static int find(const struct roots *roots, const char *path, bool read, enum reach *reach)
 {
     if (!roots || (roots->named && strcmp(path, roots->named) == 0))
         return open_regular(AT_FDCWD, path, true, read, reach);
@@ -171,6 +171,15 @@ static int follow(const struct roots *roots, const char *path, bool read, enum r
         *reach = REACH_MISSING;
     }
     free(resolved);
+    errno = reason;
+    return fd;
+}
+
+static int follow(const struct roots *roots, const char *path, bool read, enum reach *reach)
+{
+    int fd = find(roots, path, read, reach), reason = errno;
+    if (roots && roots->found && (*reach == REACH_FILE || *reach == REACH_MISSING))
+        roots->found(roots->found_user, path);
     errno = reason;
     return fd;
 }

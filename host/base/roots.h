@@ -29,6 +29,10 @@ struct roots {
     char reason[REACH_REASON_BYTES]; /* of roots_why_not */
     uint32_t refused_count;          /* how often a path outside was refused */
     char *refused_folder;            /* the folder of the first of these; NULL: none */
+    /* Gets each path that leads to a file below one of the folders, or would if it were there;
+       NULL: not wanted. */
+    void (*found)(void *user, const char *path);
+    void *found_user;
 };
 
 /* Starts with the folder of `named`, a file that the user named. WHIT_ERROR_MEMORY. A folder that

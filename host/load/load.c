@@ -170,6 +170,8 @@ static whit_result load_named(const whit_log *log, const char *path, bool piped,
                                                                : scene_default_memory_limit();
     whit_result result =
         piped ? roots_init_input(&scene->roots, path) : roots_init(&scene->roots, path);
+    scene->roots.found = params ? params->found : NULL;
+    scene->roots.found_user = params ? params->found_user : NULL;
     for (uint32_t i = 0; params && result == WHIT_OK && i < params->allowed_count; i++)
         result = roots_allow(log, &scene->roots, params->allowed_folders[i]);
     scene->is_model = load_is_model(path);

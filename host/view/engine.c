@@ -483,6 +483,7 @@ uint32_t engine_destroy(struct engine *engine)
     for (int i = 0; i < 2; ++i)
         shader_ref_drop(engine->versions[i]);
     engine_probe_finish(&engine->probe);
+    file_list_finish(&engine->unread);
     pthread_cond_destroy(&engine->work);
     pthread_cond_destroy(&engine->news);
     pthread_mutex_destroy(&engine->lock);

@@ -4,6 +4,7 @@
 #define VIEW_ENGINE_H
 
 #include "base/sample.h"
+#include "base/watch.h"
 #include "view/difference.h"
 #include "view/session.h"
 #include "whit/whit_program.h"
@@ -148,6 +149,9 @@ struct engine_status {
     struct engine_reload reload; /* the last reload */
 };
 void engine_get_status(struct engine *engine, struct engine_status *status);
+
+/* Watches the files of the last scene that could not be shown, as far as it named them. */
+void engine_watch_unread(struct engine *engine, struct watch *watch);
 
 /* Moves the newest picture into *frame, whose old contents are freed; false: there is no newer one
    than frame->number. `other`: the picture for engine_ask_other. */

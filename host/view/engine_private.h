@@ -93,7 +93,8 @@ struct engine {
     bool busy;           /* the drawing thread draws, or gives memory back */
     bool littered;       /* a session was made or dropped: the heaps have free memory */
     uint64_t uses;
-    uint32_t lost; /* devices lost without a picture in between */
+    struct file_list unread; /* files of the last scene that could not be shown */
+    uint32_t lost;           /* devices lost without a picture in between */
     bool probe_wanted;
     uint32_t probe_x, probe_y;
     uint64_t probes;

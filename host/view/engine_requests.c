@@ -109,6 +109,14 @@ void engine_ask_other(struct engine *engine, const struct settings *settings)
     pthread_mutex_unlock(&engine->lock);
 }
 
+void engine_watch_unread(struct engine *engine, struct watch *watch)
+{
+    pthread_mutex_lock(&engine->lock);
+    for (uint32_t i = 0; i < engine->unread.count; ++i)
+        watch_add(watch, engine->unread.paths[i]);
+    pthread_mutex_unlock(&engine->lock);
+}
+
 void engine_get_status(struct engine *engine, struct engine_status *status)
 {
     pthread_mutex_lock(&engine->lock);

@@ -291,6 +291,17 @@ void engine_forget_error(struct engine *engine)
     engine->status.error[0] = engine->status.errors[0] = '\0';
 }
 
+/* Keeps the files of a scene that was loaded for this job, which no other session has. */
+static void keep_unread(struct engine *engine, const struct engine_job *job)
+{
+    struct scene_ref *ref = job->session->scene;
+    if (job->reloads || job->scene || !ref)
+        return;
+    file_list_finish(&engine->unread);
+    engine->unread = ref->files;
+    ref->files = (struct file_list){0};
+}
+
 void engine_reap_job(struct engine *engine)
 {
     struct engine_job *job = engine->job;
@@ -305,6 +316,7 @@ void engine_reap_job(struct engine *engine)
         memcpy(engine->status.error, job->session->error, sizeof engine->status.error);
         memcpy(engine->status.errors, job->session->errors, sizeof engine->status.errors);
         engine->status.result = job->result;
+        keep_unread(engine, job);
         if (!engine->status.error[0])
             snprintf(engine->status.error, sizeof engine->status.error, "out of memory");
         for (int i = 0; i < ENGINE_LANES; ++i) {

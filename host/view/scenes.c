@@ -132,6 +132,12 @@ void view_open(struct view *view, const char *path)
     }
     if (skies_drop(view, path))
         return;
+    if (path_is(path, "png")) {
+        /* Its functions need the answer of the user, whom `whit view` asks on the terminal. */
+        view_say(view, "%s is a picture; `whit view %s` shows what it was made from",
+                 path_name(path), path_name(path));
+        return;
+    }
     if (strlen(path) >= sizeof view->settings.scene) {
         view_say(view, "the path is too long");
         return;
@@ -169,6 +175,12 @@ bool scenes_refuse(struct view *view)
     if (strcmp(view->refused, view->status.error) != 0) {
         memcpy(view->refused, view->status.error, sizeof view->refused);
         log_error(&view->log, "%s", view->refused);
+    }
+    /* The scene is read again when one of its files is mended, or comes. A sky that was dropped is
+       given up instead. */
+    if (strcmp(settings->environment, back->environment) == 0) {
+        memcpy(view->asked, settings->scene, sizeof view->asked);
+        engine_watch_unread(view->engine, view->watch_asked);
     }
     settings->reload = back->reload;
     memcpy(settings->environment, back->environment, sizeof settings->environment);
@@ -220,20 +232,12 @@ const struct settings *scenes_shown(const struct view *view)
 
 /* ---- Files ---- */
 
-/* Watches the shown scene's own file and the files of its materials. */
 static void watch_scene(struct view *view)
 {
-    const struct scene_ref *ref = view->scene;
-    const char *last = NULL;
+    const struct file_list *files = &view->scene->files;
     watch_clear(view->watch);
-    watch_add(view->watch, ref->settings.scene);
-    for (uint32_t i = 0; i < ref->info.material_count; ++i) {
-        whit_material_info info;
-        whit_scene_get_material(ref->scene, i, &info);
-        if (info.file && (!last || strcmp(last, info.file) != 0))
-            watch_add(view->watch, info.file);
-        last = info.file;
-    }
+    for (uint32_t i = 0; i < files->count; ++i)
+        watch_add(view->watch, files->paths[i]);
 }
 
 void scenes_watch(struct view *view)

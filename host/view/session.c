@@ -1,4 +1,5 @@
 #include "view/session.h"
+#include "base/array.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "whit/whit_program.h"
@@ -17,11 +18,33 @@ struct scene_ref *scene_ref_take(struct scene_ref *ref)
     return ref;
 }
 
+void file_list_finish(struct file_list *list)
+{
+    for (uint32_t i = 0; i < list->count; ++i)
+        free(list->paths[i]);
+    free(list->paths);
+    *list = (struct file_list){0};
+}
+
+/* Without memory the file is left out: it is not watched then. */
+static void add_file(void *user, const char *path)
+{
+    struct file_list *list = user;
+    for (uint32_t i = 0; i < list->count; ++i) {
+        if (strcmp(list->paths[i], path) == 0)
+            return;
+    }
+    char *copy = string_copy(path);
+    if (!copy || !ARRAY_PUSH(list->paths, list->count, list->capacity, copy))
+        free(copy);
+}
+
 void scene_ref_drop(struct scene_ref *ref)
 {
     if (!ref || atomic_fetch_sub(&ref->refs, 1) > 1)
         return;
     whit_scene_destroy(ref->scene);
+    file_list_finish(&ref->files);
     free(ref);
 }
 
@@ -120,21 +143,20 @@ static whit_result load(struct session *session, const whit_log *log)
     whit_load_params params = settings_load(settings, allowed);
     params.cancel = &session->cancel;
     params.refused = &refused;
+    params.found = add_file;
     struct scene_ref *ref = calloc(1, sizeof *ref);
     if (!ref)
         return WHIT_ERROR_MEMORY;
     atomic_init(&ref->refs, 1);
     ref->settings = *settings;
+    params.found_user = &ref->files;
+    session->scene = ref;
     whit_result result = whit_scene_load(settings->scene, &params, log, &ref->scene);
     if (strlen(refused.folder) < sizeof session->refused)
         memcpy(session->refused, refused.folder, strlen(refused.folder) + 1);
-    if (result != WHIT_OK) {
-        free(ref);
-        return result;
-    }
-    whit_scene_get_info(ref->scene, &ref->info);
-    session->scene = ref;
-    return WHIT_OK;
+    if (result == WHIT_OK)
+        whit_scene_get_info(ref->scene, &ref->info);
+    return result;
 }
 
 static whit_result build(struct session *session)

@@ -7,12 +7,20 @@
 
 #include "settings/settings.h"
 
+/* Paths of files, each once, malloc'ed. */
+struct file_list {
+    char **paths;
+    uint32_t count, capacity;
+};
+void file_list_finish(struct file_list *list);
+
 /* A loaded scene. Several sessions, and whatever shows its names, hold references. */
 struct scene_ref {
     atomic_uint refs;
     whit_scene *scene;
     whit_scene_info info;
     struct settings settings; /* settings that it was loaded for */
+    struct file_list files;   /* files that it was read from, and missing ones that it names */
 };
 struct scene_ref *scene_ref_take(struct scene_ref *ref); /* NULL is fine */
 void scene_ref_drop(struct scene_ref *ref);              /* NULL is fine */
@@ -47,8 +55,8 @@ enum { SESSION_ERROR = 1100, SESSION_ERRORS = 34 * SESSION_ERROR };
 struct session {
     void (*step)(void *user, const whit_step *step); /* gets steps of a picture; or NULL */
     void *step_user;
-    struct settings settings; /* those of its scene, trees and kernel, and of its last picture */
-    struct scene_ref *scene;
+    struct settings settings;  /* those of its scene, trees and kernel, and of its last picture */
+    struct scene_ref *scene;   /* after a failure it may be without `scene` and `info` */
     struct shader_ref *shader; /* NULL: none */
     whit_accel *accel;
     whit_device *device;

@@ -60,6 +60,10 @@ typedef struct whit_load_params {
     const char *const *allowed_folders;
     uint32_t allowed_count;
     whit_refused *refused; /* filled in, on failure too; NULL: not wanted */
+    /* Called from this thread with the path of each file that is read, or is missing, the scene's
+       own among them; perhaps more than once for a file. NULL: never. */
+    void (*found)(void *user, const char *path);
+    void *found_user;
 } whit_load_params;
 
 /* .json scene files and .obj .gltf .glb .ply .stl .fbx .dae .3mf .off models. `-` is standard

@@ -35,6 +35,7 @@ back: press Left | scene = list/c.json | frame.ids as c
 stepped: press Period
 plays! press Space, drop $OUT/nowhere.json, until error | playing = true
 stood: press Space | frame.pixels as stepped | render as stepped | frame.pixels not as back
+picture: drop $OUT/nowhere.png | toast = nowhere.png is a picture; \`whit view nowhere.png\` shows what it was made from | error as stood
 dropped: drop $SCENES/cube.json | scene = $SCENES/cube.json | frame.ids as a
 beside: press Left | scene = $SCENES/balls.json | frame.ids not as a
 again: press Right | scene = $SCENES/cube.json | frame.ids as a
@@ -148,6 +149,45 @@ END
         " own.json:$line  own.json:$line  late.json: there is no such file "
 fi
 
+if part 1 2; then
+    # So it is when another file of it was written, or appears: models, pictures and the environment.
+    mkdir parts
+    printf 'v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n' >parts/m.obj
+    printf '{ "materials": { "paint": { "texture": "parts/t.png" } },
+      "objects": [{ "model": "parts/m.obj" }, { "shape": "box", "material": "paint", "translation": [1, 1, 1] }] }\n' >whole.json
+    sed 's:parts/m.obj:parts/late.obj:' whole.json >lacks.json
+    run render "$CUBE" --size 4x4 -o one.png --quiet
+    run render "$SCENES/whitted.json" --size 4x4 -o two.png --quiet
+    run render "$CUBE" --size 8x4 -o sky.new.exr --quiet
+    cp one.png parts/t.png
+    run render "$SCENES/whitted.json" --size 8x4 -o around.exr --quiet
+    steps >"$OUT/replay" <<END
+start: | error =
+until toast
+model: | frame.ids not as start | error =
+model-told! wait 9000 | toast =
+until toast
+texture: | frame.ids as model | frame.pixels not as model
+texture-told! wait 9000 | toast =
+until toast
+sky: | frame.ids as model | frame.pixels not as texture
+until error
+lacks: | error has parts/late.obj | frame.pixels as sky
+until error = $NONE
+came: | frame.ids not as sky | scene = whole.json
+END
+    on_state() {
+        case $1 in
+        *'"at":"start"'*) sed 's/v 0 1 0/v 0 3 0/' parts/m.obj >m.new && mv m.new parts/m.obj ;;
+        *'"at":"model-told"'*) mv two.png parts/t.png ;;
+        *'"at":"texture-told"'*) mv sky.new.exr around.exr ;;
+        *'"at":"sky"'*) mv lacks.json whole.json ;;
+        *'"at":"lacks"'*) sed 's/v 0 3 0/v 3 3 0/' parts/m.obj >m.new && mv m.new parts/late.obj ;;
+        esac
+    }
+    follow "each file of it" whole.json --size 96x64 --environment around.exr
+fi
+
 # If the scene cannot be read at the start, the viewer ends with an error.
 printf '{ "asset": { "version": "2.0" }, ' >broken.gltf
 printf 'v 0 0 0\nf 1 2 3\n' >broken.obj
@@ -216,6 +256,18 @@ END
     play "costs" "$SCENES/default.json" $SMALL --view visits --view-rays all --view-scale 64 <<END
 start: press F2 x2 | words = --size 96x64 --view visits --view-rays all --view-scale 64 | frame.view = visits
 END
+fi
+
+if part 1 2; then
+    # A file of settings begins with a line for a shell. Keys that come between two pictures are all counted.
+    cp "$CUBE" "it's a cube.json"
+    play "a name to quote" "it's a cube.json" $SMALL <<END
+up: press Z | render has --exposure 0.5
+down: press Shift+Z x2, press Ctrl+S | render has --exposure -0.5
+END
+    check "its line can be run" test "$(head -n 1 whit-0001.view)" = \
+        "# whit view 'it'\\''s a cube.json' --state whit-0001.view"
+    rm whit-0001.view
 fi
 
 # ---- Replays ----

@@ -85,7 +85,8 @@ LoadParams = _struct(
     "LoadParams", ("up", Up), ("lights", Lights), ("clip environment", c_char_p), ("has_background", c_bool),
     ("background", c_uint8 * 3), ("import_limit_s time_limit_s", c_double), ("require_sandbox", c_bool),
     ("memory_limit_bytes", c_uint64), ("texture_limit", c_uint32), ("cancel", c_void_p),
-    ("allowed_folders", ctypes.POINTER(c_char_p)), ("allowed_count", c_uint32), ("refused", c_void_p))
+    ("allowed_folders", ctypes.POINTER(c_char_p)), ("allowed_count", c_uint32), ("refused", c_void_p),
+    ("found found_user", c_void_p))
 SceneInfo = _struct(
     "SceneInfo",
     ("mesh_count instance_count node_count material_count texture_count light_count camera_count note_count"
