@@ -9,6 +9,7 @@
 #include "base/path.h"
 #include "base/text.h"
 #include "base/watch.h"
+#include "view/engine_turns.h"
 #include "view/view_private.h"
 
 enum { PAIR_BYTES = 256 };
@@ -67,18 +68,6 @@ void shaders_end(struct view *view)
 {
     watch_destroy(view->shaders.watch);
     shader_ref_drop(view->shaders.shown);
-}
-
-void shaders_watch(struct view *view)
-{
-    struct shaders *shaders = &view->shaders;
-    if (!watch_changed(shaders->watch))
-        return;
-    view->settings.shader_reload = ++view->reloads;
-    shaders->wait = (struct shaders_wait){
-        .goes_on = true, .saved_ms = whit_clock_ms(), .asked = view->settings};
-    engine_stop_reload(view->engine);
-    view->progress_ms = shaders->wait.saved_ms;
 }
 
 /* Says that the shader has no aov of the name in the settings: colours are shown instead. */
@@ -225,17 +214,18 @@ static bool is_seen(const struct shaders *shaders)
            whit_clock_ms() - fmax(shaders->wait.first_ms, shaders->wait.whole_ms) > SEEN_MS;
 }
 
-void shaders_step(struct view *view)
+/* Whether the window has not told yet what the last save changed. */
+static bool is_untold(const struct view *view)
+{
+    const struct shaders *shaders = &view->shaders;
+    const struct engine_reload *reload = &view->status.reload;
+    return shaders->reload != reload->number && shaders->wait.goes_on &&
+           reload->settings.shader_reload == shaders->wait.asked.shader_reload;
+}
+
+static void tell(struct view *view, const struct engine_reload *reload)
 {
     struct shaders *shaders = &view->shaders;
-    const struct engine_reload *reload = &view->status.reload;
-    if (shaders->reload == reload->number || !shaders->wait.goes_on ||
-        reload->settings.shader_reload != shaders->wait.asked.shader_reload)
-        return;
-    if (!reload->over && is_seen(shaders))
-        engine_measure_reload(view->engine);
-    if (!reload->over || !is_shown(view))
-        return;
     const char *name = view->settings.shader[0] ? path_name(view->settings.shader) : "stages";
     shaders->reload = reload->number;
     shaders->wait.goes_on = false;
@@ -243,6 +233,35 @@ void shaders_step(struct view *view)
     log_info(&view->log, "%s: %s", name, shaders->line);
     if (reload->ms.count > 0 || !view->toast[0]) /* a message of the key that ended it stays */
         view_say(view, "%s: %s", name, shaders->line);
+}
+
+void shaders_step(struct view *view)
+{
+    const struct engine_reload *reload = &view->status.reload;
+    if (!is_untold(view))
+        return;
+    if (!reload->over && is_seen(&view->shaders))
+        engine_measure_reload(view->engine);
+    if (reload->over && is_shown(view))
+        tell(view, reload);
+}
+
+void shaders_watch(struct view *view)
+{
+    struct shaders *shaders = &view->shaders;
+    if (!watch_changed(shaders->watch))
+        return;
+    engine_stop_reload(view->engine);
+    if (is_untold(view)) {
+        struct engine_reload stopped = view->status.reload;
+        if (!stopped.over)
+            stopped.why = ENGINE_TURNS_STOPPED;
+        tell(view, &stopped);
+    }
+    view->settings.shader_reload = ++view->reloads;
+    shaders->wait = (struct shaders_wait){
+        .goes_on = true, .saved_ms = whit_clock_ms(), .asked = view->settings};
+    view->progress_ms = shaders->wait.saved_ms;
 }
 
 /* ---- Sliders ---- */

@@ -337,6 +337,24 @@ END
     }
     follow "saves that mean harm" cube.json --size 96x64 --shader live/h.glsl
     check "the compiler's two errors are told once each" test "$(grep -c 'error: live/h.glsl' "$OUT/stderr")" -eq 2
+    # A save that ends the measurement of the one before leaves its line.
+    versions live/h.glsl good gbr grb
+    steps >"$OUT/replay" <<END
+start: | error =
+until shader.whole = 1
+first! | shader.hash = $gbr
+until shader.hash = $grb
+until shader.changed
+second: | shader.whole = 2
+END
+    on_state() {
+        case $1 in
+        *'"at":"start"'*) put gbr.new live/h.glsl ;;
+        *'"at":"first"'*) put grb.new live/h.glsl ;;
+        esac
+    }
+    follow "saves in a row" cube.json --size 96x64 --shader live/h.glsl
+    check "a line for each" test "$(grep -c 'note: h.glsl: ' "$OUT/stderr")" -eq 2
 fi
 
 # ---- If the compiler's process ends while it compiles, that is an error like others, and the next save works ----
