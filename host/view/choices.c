@@ -97,9 +97,10 @@ void choice_set_number(struct settings *settings, const struct setting *row, dou
     char text[40];
     number = number < row->min ? row->min : number > row->max ? row->max : number;
     setting_write_number(number, text, sizeof text);
-    if (row->kind == SETTING_OWN && number == settings->scene_exposure_ev)
-        strcpy(text, "auto");
-    set_text(settings, row, text);
+    bool is_auto = row->kind == SETTING_OWN && number == settings->scene_exposure_ev;
+    set_text(settings, row, is_auto ? "auto" : text);
+    if (is_auto) /* the next key may come before settings_expose does this */
+        settings->picture.exposure_ev = number;
 }
 
 void choice_turn(struct settings *settings, const struct setting *row, int by)
