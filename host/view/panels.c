@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "settings/quote.h"
 #include "view/choices.h"
 #include "view/price_panel.h"
 #include "view/scenes.h"
@@ -53,10 +54,9 @@ static whit_result write_state(const struct view *view, const char *path)
     whit_result result = file_write_begin(&view->log, path, &file);
     if (result != WHIT_OK)
         return result;
-    char scene[WORDS_BYTES], own[WORDS_BYTES];
-    fprintf(file.stream, "# whit view %s --state %s\n%s\n",
-            whit_text_show(view->settings.scene, scene, sizeof scene),
-            whit_text_show(path, own, sizeof own), words);
+    fputs("# whit view ", file.stream);
+    quote_print(view->settings.scene, file.stream);
+    fprintf(file.stream, " --state %s\n%s\n", path, words); /* path is from view_free_name */
     return file_write_commit(&view->log, &file);
 }
 
