@@ -169,9 +169,11 @@ static void draw_more(const struct view *view)
             chain.format);
     draw_estimates(frame);
     ui_separator();
-    ui_text("%llu triangles, %llu balls, %u instances, %u lights",
-            (unsigned long long)scene->triangle_count, (unsigned long long)scene->sphere_count,
-            scene->instance_count, scene->light_count);
+    ui_text("%llu triangle%s, %llu ball%s, %u instance%s, %u light%s",
+            (unsigned long long)scene->triangle_count, scene->triangle_count == 1 ? "" : "s",
+            (unsigned long long)scene->sphere_count, scene->sphere_count == 1 ? "" : "s",
+            scene->instance_count, scene->instance_count == 1 ? "" : "s", scene->light_count,
+            scene->light_count == 1 ? "" : "s");
     ui_text("rays: %llu camera, %llu shadow, %llu reflected, %llu refracted",
             (unsigned long long)s->rays_primary, (unsigned long long)s->rays_shadow,
             (unsigned long long)s->rays_reflected, (unsigned long long)s->rays_refracted);
@@ -480,7 +482,8 @@ static void draw_boxes(const struct view *view)
     overlay_boxes(view);
     if (ui_panel_begin("boxes", 1.0f, 0.0f, UI_PANEL_PLAIN)) {
         ui_text("%s, level %u", trees[s->boxes], s->boxes_level);
-        ui_text("%llu boxes%s", (unsigned long long)frame->boxes_total,
+        ui_text("%llu box%s%s", (unsigned long long)frame->boxes_total,
+                frame->boxes_total == 1 ? "" : "es",
                 frame->boxes_total > ENGINE_BOXES_MAX ? ", the first 8192 are drawn" : "");
         ui_text_color(0xFFFFC060u, "inner nodes");
         ui_same_line(0);

@@ -212,7 +212,8 @@ static int lose_display(void *display)
 {
     (void)display;
     if (the_window)
-        log_error(&the_window->log, "the display of the window is gone");
+        log_error(&the_window->log,
+                  "the display of the window is gone; `whit render` draws without a window");
     file_abandon_all();
     _Exit(WINDOW_LOST_EXIT);
 }

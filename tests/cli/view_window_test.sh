@@ -217,7 +217,7 @@ status=$?
 wait $server
 exec 5<&-
 check "the display is gone ($line): exit code 3 (got $status)" test "$status" -eq 3
-check "the display is gone: says so" grep -q "the display of the window is gone" "$OUT/stderr"
+check "the display is gone: says so" grep -q "the display of the window is gone.*whit render" "$OUT/stderr"
 export WHIT_FAULT=vkCreateSurface:1
 run view "$CUBE" --frames 1
 check "no surface: exit code 2 or 3 (got $status)" test "$status" -eq 2 -o "$status" -eq 3
