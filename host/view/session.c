@@ -18,6 +18,8 @@ struct scene_ref *scene_ref_take(struct scene_ref *ref)
     return ref;
 }
 
+enum { FILES_MAX = 4096 };
+
 void file_list_finish(struct file_list *list)
 {
     for (uint32_t i = 0; i < list->count; ++i)
@@ -26,10 +28,12 @@ void file_list_finish(struct file_list *list)
     *list = (struct file_list){0};
 }
 
-/* Without memory the file is left out: it is not watched then. */
+/* A file that is left out, for lack of memory or because there are too many, is not watched. */
 static void add_file(void *user, const char *path)
 {
     struct file_list *list = user;
+    if (list->count == FILES_MAX)
+        return;
     for (uint32_t i = 0; i < list->count; ++i) {
         if (strcmp(list->paths[i], path) == 0)
             return;
