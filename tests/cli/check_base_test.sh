@@ -123,4 +123,15 @@ expect 0 "accepted" check suite/looks.whit --accept option --reason "fewer bounc
 git commit -qam accepted && cp before suite/looks.golden
 expect 1 "a golden of before" check suite/looks.whit --only option --base HEAD
 check "is older than the revision" grep -qx "option: differs: HEAD gives this picture too, and its golden has it: .*" "$OUT/stdout"
+
+# A file that the revision lacks matters to the cause of its own case alone.
+cp suite/plain.json suite/made.json && echo made.json >.gitignore
+printf '{plain,made} {}.json --size 16x12\n' >suite/made.whit && echo 'a a.json --sice 3' >suite/wrong.whit
+expect 0 "accepted" check suite/made.whit --accept all
+git add -A && git commit -qm made
+edit plain.json 's/"radius": 0.6/"radius": 0.7/' && edit made.json 's/"radius": 0.6/"radius": 0.7/' && edit wrong.whit 's/sice/aa/'
+expect 1 "a file that the revision lacks" check suite/made.whit --base HEAD
+check "is told" grep -qx "made: differs: HEAD has no suite/made.json" "$OUT/stdout"
+check "the other case has a cause" grep -q '^plain: differs: .*cause: mesh "ball"' "$OUT/stdout"
+refuse 2 "a wrong line of the revision" "base HEAD: suite/wrong.whit:1: there is no option" check suite/wrong.whit --base HEAD
 finish

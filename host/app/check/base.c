@@ -12,7 +12,16 @@
 static void say_wrong(void *user, const char *text)
 {
     const struct base *base = user;
-    cli_error("--base %s: %s", cli_shown(base->tree.revision), cli_shown(text));
+    cli_error("--base %s: %s", cli_shown(base->tree.revision),
+              cli_shown(worktree_name(&base->tree, text)));
+}
+
+/* For suite_read: a file that the revision lacks matters only to a case that differs. */
+static bool needs_no_files(const void *user, const char *name)
+{
+    (void)user;
+    (void)name;
+    return false;
 }
 
 /* A golden that cannot be read, as one of an older format, counts as none. */
@@ -43,7 +52,8 @@ whit_result base_open(struct base *base, const char *suite, const char *root, co
             cli_error("--base %s: it has no %s", cli_shown(revision), suite);
             result = WHIT_ERROR_INPUT;
         } else if (!base->path || (root && !base->root) ||
-                   !suite_read(&base->suite, base->path, base->root, NULL, say_wrong, base)) {
+                   !suite_read(&base->suite, base->path, base->root, needs_no_files, say_wrong,
+                               base)) {
             result = WHIT_ERROR_INPUT;
         } else {
             read_golden(base, kind);
@@ -131,6 +141,18 @@ static void write_same(const struct base *base, const struct past *past, const c
                    "or the device is other");
 }
 
+/* The first file of the case that the revision lacks; NULL: it has them all. */
+static const char *missing_file(const struct base *base, const struct check_case *item)
+{
+    const struct settings *of = item->settings;
+    const char *const files[] = {of->scene, of->environment, of->shader};
+    for (size_t i = 0; i < sizeof files / sizeof *files; ++i) {
+        if (files[i][0] && !file_exists(files[i]))
+            return worktree_name(&base->tree, files[i]);
+    }
+    return NULL;
+}
+
 whit_result base_explain(const struct base *base, struct studio *studio,
                          const struct check_case *item, const struct golden_case *accepted,
                          const struct drawing *drawing, char **text, whit_image **before)
@@ -141,8 +163,9 @@ whit_result base_explain(const struct base *base, struct studio *studio,
     size_t size;
     *text = NULL;
     *before = NULL;
-    if (!old) {
-        *text = string_format("%s has no such case", revision);
+    const char *missing = old ? missing_file(base, old) : "such case";
+    if (missing) {
+        *text = string_format("%s has no %s", revision, missing);
         return *text ? WHIT_OK : WHIT_ERROR_MEMORY;
     }
     FILE *to = open_memstream(text, &size);

@@ -174,6 +174,14 @@ char *worktree_folder(const struct worktree *tree, const char *folder)
     return path;
 }
 
+const char *worktree_name(const struct worktree *tree, const char *path)
+{
+    size_t length = strlen(tree->holder) + strlen(TREE "/");
+    if (strncmp(path, tree->holder, strlen(tree->holder)) != 0)
+        return path;
+    return path + length + strspn(path + length, "/");
+}
+
 whit_result worktree_add(struct worktree *tree, const char *folder, const char *revision)
 {
     char line[1024];

@@ -23,6 +23,9 @@ WHIT_CHECK whit_result worktree_add(struct worktree *tree, const char *folder,
 /* The path in the worktree of a folder of the repository; free() it. NULL, with a message, for a
    folder outside of the repository or in none. */
 char *worktree_folder(const struct worktree *tree, const char *folder);
+/* The path in the repository of a file of the worktree; text may follow it. Other text is returned
+   as it is. */
+const char *worktree_name(const struct worktree *tree, const char *path);
 void worktree_remove(struct worktree *tree);
 
 #endif
