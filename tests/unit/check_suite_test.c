@@ -99,6 +99,15 @@ TEST_IN(names_are_from_the_root, folder_begin, folder_end)
     assert_string_equal(suite.cases[0].settings->scene, in_folder("sub/b.json"));
     assert_false(read_text("one ../a.json", root));
     assert_non_null(strstr(said, "s.whit:1: the scene `../a.json`: it lies outside"));
+    /* A name that leads out and back, or an absolute one, would fail in a copy of the folder. */
+    assert_false(read_text("one ../sub/b.json", in_folder("sub")));
+    assert_non_null(strstr(said, "s.whit:1: the scene `../sub/b.json`: a name from"));
+    char text[512];
+    snprintf(text, sizeof text, "one %s\ndots ./a..json", in_folder("a.json"));
+    put_text("a..json", "");
+    assert_false(read_text(text, NULL));
+    assert_int_equal(suite.wrong, 1);
+    assert_non_null(strstr(said, "/a.json`: a name from the suite's folder down"));
 }
 
 TEST_IN(expectations_go_to_their_cases, folder_begin, folder_end)
@@ -144,6 +153,8 @@ TEST_IN(wrong_lines_are_told, folder_begin, folder_end)
         {"link away.json", "the scene `away.json`: it lies outside"},
         {"sky a.json --environment away.json", "--environment `away.json`: it lies outside"},
         {"hook a.json --shader ../x.glsl", "--shader `../x.glsl`: it lies outside"},
+        {"back sub/../a.json", "the scene `sub/../a.json`: a name from the suite's folder down"},
+        {"end a.json --shader sub/..", "--shader `sub/..`: a name from the suite's folder down"},
         {"w1 a.json -o x.png", "option `--output` writes a file"},
         {"w2 a.json --output x.png", "option `--output` writes a file"},
         {"w3 a.json --ids x.exr", "option `--ids` writes a file"},

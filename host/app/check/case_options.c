@@ -61,6 +61,22 @@ static const struct setting refused[] = {
 static const struct cli_command case_command = {
     .name = "render", .arguments = "", .summary = "", .options = refused, .settings = IN_RENDER};
 
+/* Whether a name leads from the suite's folder down. Other names may come back into this folder,
+   but not in a copy of it, such as the tree of --base. */
+static bool leads_down(const char *name)
+{
+    const char *slash = NULL;
+    if (name[0] == '/')
+        return false;
+    do {
+        const char *part = slash ? slash + 1 : name;
+        if (strcmp(part, "..") == 0 || strncmp(part, "../", 3) == 0)
+            return false;
+        slash = strchr(part, '/');
+    } while (slash);
+    return true;
+}
+
 /* Resolves a file name in the suite into a path relative to the working folder; false, with the
    reason. */
 static bool find_file(const struct suite *suite, const struct check_case *item, const char *option,
@@ -79,6 +95,9 @@ static bool find_file(const struct suite *suite, const struct check_case *item, 
         cli_misuse(reader, "%s`-`: standard input is not the suite's", option);
     else if (reach == REACH_OUTSIDE)
         cli_misuse(reader, "%s`%s`: it lies outside of the suite's folder", option, name);
+    else if (!leads_down(name))
+        cli_misuse(reader, "%s`%s`: a name from the suite's folder down, without `..`, is needed",
+                   option, name);
     else if (reach != REACH_FILE)
         cli_misuse(reader, "%s`%s`: %s", option, name, reach_words(reach));
     else if (!fits)
