@@ -138,7 +138,7 @@ TEST_IN(wrong_lines_are_told, folder_begin, folder_end)
         {"x-{a,a} a.json", "the name `x-a` is that of line"},
         {"brace a.json --depth {}", "{} stands for"},
         {"quote 'a.json", "a quote has no end"},
-        {"quote \"a.json", "a quote has no end"},
+        {"quotes \"a.json", "a quote has no end"},
         {"none --depth 3", "a scene is missing"},
         {"many a.json a.json", "one argument too many"},
         {"misspelt a.json --dpeth 3", "did you mean `--depth`"},
@@ -191,6 +191,26 @@ TEST_IN(wrong_lines_are_told, folder_begin, folder_end)
         at = end + 1;
     }
     assert_string_equal(at, "");
+}
+
+/* A case whose options are wrong is still a case for the lines below. */
+TEST_IN(a_wrong_case_has_a_name, folder_begin, folder_end)
+{
+    assert_false(read_text("a a.json --sice 3\n"
+                           "a expect nonfinite == 0, pixel(5000,3) == 0\n"
+                           "a a.json\n"
+                           "b-{x,y} {}.json\n"
+                           "b-y expect hits > 0\n"
+                           "c 'a.json\n"
+                           "[bc]* expect leeks == 0\n",
+                           NULL));
+    assert_string_equal(said, "s.whit:1: there is no option `--sice`; did you mean `--size`?\n"
+                              "s.whit:3: the name `a` is that of line 1\n"
+                              "s.whit:4: the scene `x.json`: there is no such file\n"
+                              "s.whit:6: a quote has no end\n"
+                              "s.whit:7: `leeks`: there is no such field; did you mean `leaks`; "
+                              "docs/check.md lists them\n");
+    assert_int_equal(suite.wrong, 5);
 }
 
 TEST_IN(no_suite_is_told, folder_begin, folder_end)

@@ -152,8 +152,8 @@ bool expectation_read(struct check_expectation *one, const char *text, size_t le
     if (!read_field(&at, one, why) || !read_op(&at, one, why))
         return false;
     const struct expect_field *field = &expect_fields[one->field];
-    const whit_renderer_params *picture = &settings->picture;
-    if (field->of_pixel && (one->x >= picture->width || one->y >= picture->height))
+    const whit_renderer_params *picture = settings ? &settings->picture : NULL;
+    if (picture && field->of_pixel && (one->x >= picture->width || one->y >= picture->height))
         return setting_refuse(why, "pixel(%u,%u) lies outside of %u x %u pixels", one->x, one->y,
                               picture->width, picture->height);
     return field->kind == EXPECT_NAME ? read_word(at, one, why)

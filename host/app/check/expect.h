@@ -28,8 +28,9 @@ struct check_expectation {
 
 struct drawing;
 
-/* Reads one expectation, of `length` bytes, about a picture with these settings. False, with the
-   reason in `why`. Call expectation_finish() in any case. */
+/* Reads one expectation, of `length` bytes, about a picture with these settings; NULL: they are
+   not known, and a pixel may lie anywhere. False, with the reason in `why`. Call
+   expectation_finish() in any case. */
 bool expectation_read(struct check_expectation *one, const char *text, size_t length,
                       const struct settings *settings, char why[SETTING_WHY_BYTES]);
 void expectation_finish(struct check_expectation *one);

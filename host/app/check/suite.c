@@ -25,6 +25,15 @@ struct line {
     char where[WHERE_BYTES];
 };
 
+/* Tells what is wrong with a line, once: the cases of its {a,b} mostly have the same fault. */
+static void tell(const struct line *line, const char *text)
+{
+    struct suite *suite = line->suite;
+    if (!line->number || suite->told != line->number)
+        suite->say(suite->user, text);
+    suite->told = line->number;
+}
+
 static bool refuse(const struct line *line, const char *format, ...) WHIT_PRINTF(2, 3);
 static bool refuse(const struct line *line, const char *format, ...)
 {
@@ -34,7 +43,7 @@ static bool refuse(const struct line *line, const char *format, ...)
     vsnprintf(why, sizeof why, format, args);
     va_end(args);
     snprintf(text, sizeof text, "%s: %s", line->where, why);
-    line->suite->say(line->suite->user, text);
+    tell(line, text);
     return false;
 }
 
@@ -112,27 +121,38 @@ static void case_finish(struct check_case *item)
     free(item->loaded);
 }
 
-static bool add_case(const struct line *line, const char *name, char *text)
+/* Reads what stands behind a case's name. */
+static bool read_case(const struct line *line, struct check_case *item, char *text)
 {
     static char program[] = "whit";
-    struct suite *suite = line->suite;
     char *argv[WORDS_MAX + 1] = {program}, said[SAID_BYTES];
-    struct check_case item = {.line = line->number};
     int argc = 1;
-    if (!check_name(line, name) || !split(line, text, argv, &argc))
+    if (!split(line, text, argv, &argc))
+        return false;
+    if (case_options_read(item, line->suite, line->where, argc, argv, said, sizeof said))
+        return true;
+    tell(line, said);
+    free(item->settings);
+    item->settings = NULL;
+    return false;
+}
+
+/* Adds a case even if its options are wrong, so that later lines that name it are judged for
+   themselves. */
+static bool add_case(const struct line *line, const char *name, char *text)
+{
+    struct suite *suite = line->suite;
+    struct check_case item = {.line = line->number};
+    if (!check_name(line, name))
         return false;
     if (suite->count == CHECK_CASES_MAX)
         return refuse(line, "more than %d cases", CHECK_CASES_MAX);
     item.name = string_copy(name);
     if (!item.name)
         return refuse(line, "out of memory");
-    if (!case_options_read(&item, suite, line->where, argc, argv, said, sizeof said)) {
-        suite->say(suite->user, said);
-        case_finish(&item);
-        return false;
-    }
+    bool read = read_case(line, &item, text);
     if (ARRAY_PUSH(suite->cases, suite->count, suite->capacity, item))
-        return true;
+        return read;
     case_finish(&item);
     return refuse(line, "out of memory");
 }
@@ -261,15 +281,16 @@ static bool read_alternatives(const struct line *line, const char *name, const c
                               const char *rest)
 {
     const char *close = strchr(open, '}');
+    bool good = true;
     if (!close || strchr(close, '{'))
         return refuse(line, "the name `%.40s`: one {a,b} with a } is needed", name);
     for (const char *at = open + 1;; ++at) {
         size_t length = strcspn(at, ",}");
-        if (!read_alternative(line, name, open, at, length, rest))
-            return false;
+        uint32_t count = line->suite->count;
+        good &= read_alternative(line, name, open, at, length, rest);
         at += length;
-        if (*at == '}')
-            return true;
+        if (*at == '}' || (!good && line->suite->count == count))
+            return good;
     }
 }
 

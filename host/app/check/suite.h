@@ -12,7 +12,8 @@ enum { CHECK_NAME_MAX = 64, CHECK_CASES_MAX = 4096 };
 struct check_case {
     char *name;
     uint32_t line;
-    struct settings *settings; /* file names in them are relative to the working folder */
+    struct settings *settings; /* file names in them are relative to the working folder; NULL: the
+                                  options are wrong, and so is the suite */
     char *made_by; /* scene and options as the suite names them: `room.json --depth 4` */
     char *loaded;  /* the same, with only the options that affect how the scene is loaded */
     struct check_expectation *expectations;
@@ -28,6 +29,7 @@ struct suite {
     struct check_case *cases; /* in the order of the file */
     uint32_t count, capacity;
     uint32_t wrong;           /* number of wrong lines */
+    uint32_t told;            /* the last line that `say` was called for */
     size_t expectation_bytes; /* of the expectations of all cases */
     suite_needs *needs;
     /* Gets "FILE:LINE: reason" for each wrong line. */
