@@ -60,7 +60,7 @@ edit gone.json '/"name": "floor", "shape"/d'
 edit two.obj 's/v 1 1 0.5/v 1 1.25 0.5/'
 edit two.json 's/"intensity": 20/"intensity": 21/; s/#202020/#203020/'
 expect 1 "without a base" check suite/looks.whit --only slider
-check "a file that is included and a slider are told" grep -q '; input changed: functions of .*, `plain.json .*--set gain=3`, was `plain.json .*--set gain=2`$' \
+check "a file that is included and a slider are told" grep -q '; input changed: functions of suite/post.glsl, `plain.json .*--set gain=3`, was `plain.json .*--set gain=2`$' \
     "$OUT/stdout"
 expect 1 "all of it" check suite/looks.whit --base HEAD --report page.html
 cp "$OUT/stdout" "$OUT/said"

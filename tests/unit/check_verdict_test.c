@@ -18,6 +18,9 @@ static void put_part(struct golden *golden, const char *key, uint64_t content)
     assert_true(golden_case_add_part(&golden->cases[0], hash));
 }
 
+static struct settings settings = {.shader = "toon.glsl"};
+static const struct check_case with_shader = {.settings = &settings};
+
 static void fill(struct golden *golden, const struct golden_case *item)
 {
     *golden = (struct golden){.exists = true};
@@ -30,7 +33,7 @@ static void expect_verdict(const struct golden_case *found, uint64_t ball, const
                            enum check_verdict verdict, const char *text)
 {
     struct golden golden;
-    struct check_result result = {.verdict = CHECK_NOT_RUN};
+    struct check_result result = {.item = &with_shader};
     fill(&golden, &usual);
     result.found = (struct golden){.exists = true};
     assert_true(golden_put(&result.found, found));
@@ -82,6 +85,8 @@ TEST(what_it_is_made_of_does_not)
                    "input changed, picture same: mesh ball of room.json");
     expect_verdict(&found, 1, "light 0 of room.json", CHECK_SAME,
                    "input changed, picture same: light 0 of room.json (new)");
+    expect_verdict(&found, 1, "functions of room.json", CHECK_SAME,
+                   "input changed, picture same: functions of toon.glsl (new)");
     found.made_by = (char[]){"room.json --leaf 2"};
     expect_verdict(&found, 1, NULL, CHECK_SAME,
                    "input changed, picture same: `room.json --leaf 2`, was `room.json`");
@@ -95,7 +100,7 @@ TEST(what_it_is_made_of_does_not)
 TEST(a_part_that_goes_is_told)
 {
     struct golden golden;
-    struct check_result result = {.verdict = CHECK_NOT_RUN};
+    struct check_result result = {.item = &with_shader};
     fill(&golden, &usual);
     put_part(&golden, "light 0 of room.json", 1);
     fill(&result.found, &usual);
@@ -133,7 +138,7 @@ TEST(the_worst_counts)
 /* A worse verdict replaces a better one; the texts of both are reported. */
 TEST(texts_add_up)
 {
-    struct check_result result = {.verdict = CHECK_NOT_RUN};
+    struct check_result result = {.item = &with_shader};
     verdict_set(&result, CHECK_OK, strdup("ok"));
     verdict_add(&result, CHECK_UNMET, strdup("one"));
     assert_string_equal(result.text, "one");

@@ -51,10 +51,20 @@ void verdict_finish(struct check_result *result)
 
 /* ---- What it is made of ---- */
 
-static void put_part(FILE *to, uint32_t *count, const char *key, const char *what)
+/* `shader`: file of the case's functions, which the message names in place of their key, since a
+   key names the scene; "": there is none. */
+static void put_part(FILE *to, uint32_t *count, const char *key, const char *shader,
+                     const char *what)
 {
-    if (++*count <= PARTS_NAMED)
-        fprintf(to, "%s%s%s", *count > 1 ? ", " : "", key, what);
+    static const char functions[] = "functions of ";
+    char shown[SETTING_VALUE_BYTES];
+    if (++*count > PARTS_NAMED)
+        return;
+    fputs(*count > 1 ? ", " : "", to);
+    if (shader[0] && strncmp(key, functions, strlen(functions)) == 0)
+        fprintf(to, "%s%s%s", functions, whit_text_show(shader, shown, sizeof shown), what);
+    else
+        fprintf(to, "%s%s", key, what);
 }
 
 /* Whether the old case has a part with that key, whatever its content. */
@@ -70,19 +80,21 @@ static bool knows_key(const struct golden *golden, const struct golden_case *old
 
 /* Writes the parts that changed, are new or are gone; gives their number. */
 static uint32_t put_changed_parts(FILE *to, const struct golden *golden,
-                                  const struct golden_case *old, const struct golden *found)
+                                  const struct golden_case *old, const struct golden *found,
+                                  const char *shader)
 {
     const struct golden_case *now = &found->cases[0];
     uint32_t count = 0;
     for (uint32_t i = 0; i < found->part_count; ++i) {
         const struct golden_part *part = &found->parts[i];
         if (!golden_case_has_part(old, part->hash))
-            put_part(to, &count, part->key, knows_key(golden, old, part->key) ? "" : " (new)");
+            put_part(to, &count, part->key, shader,
+                     knows_key(golden, old, part->key) ? "" : " (new)");
     }
     for (uint32_t i = 0; i < old->part_count; ++i) {
         const char *key = golden_part_key(golden, old->parts[i]);
         if (!golden_case_has_part(now, old->parts[i]) && key && !knows_key(found, now, key))
-            put_part(to, &count, key, " (gone)");
+            put_part(to, &count, key, "", " (gone)");
     }
     if (count > PARTS_NAMED)
         fprintf(to, " and %u more", count - PARTS_NAMED);
@@ -91,7 +103,7 @@ static uint32_t put_changed_parts(FILE *to, const struct golden *golden,
 
 /* Describes the parts and options that changed; *text NULL: none did. False: out of memory. */
 static bool find_changed(const struct golden *golden, const struct golden_case *old,
-                         const struct golden *found, char **text)
+                         const struct golden *found, const char *shader, char **text)
 {
     const struct golden_case *now = &found->cases[0];
     size_t size;
@@ -100,7 +112,7 @@ static bool find_changed(const struct golden *golden, const struct golden_case *
     if (!to)
         return false;
     bool options = strcmp(old->made_by, now->made_by) != 0;
-    uint32_t count = put_changed_parts(to, golden, old, found);
+    uint32_t count = put_changed_parts(to, golden, old, found, shader);
     if (options)
         fprintf(to, "%s`%s`, was `%s`", count ? ", " : "", now->made_by, old->made_by);
     if (fclose(to) != 0)
@@ -184,7 +196,8 @@ bool verdict_find(struct check_result *result, const struct golden *golden)
 {
     const struct golden_case *now = &result->found.cases[0];
     const struct golden_case *old = golden_find(golden, now->name);
-    if (old && !find_changed(golden, old, &result->found, &result->changed))
+    if (old && !find_changed(golden, old, &result->found, result->item->settings->shader,
+                             &result->changed))
         return false;
     enum check_verdict verdict = !old                ? CHECK_NEW
                                  : differs(old, now) ? CHECK_DIFFERS
