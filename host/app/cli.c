@@ -210,7 +210,9 @@ int cli_exit_of(whit_result result)
     if (cancelled)
         fprintf(stderr, "whit: interrupted, %s\n", written_text);
     else if (!error_said)
-        fprintf(stderr, "whit: error: %s\n", whit_result_name(result));
+        fprintf(stderr, "whit: error: %s\n",
+                result == WHIT_ERROR_TIME_LIMIT ? "the time limit passed"
+                                                : whit_result_name(result));
     if (next_command && (cancelled || cli_time_over()))
         fprintf(stderr, "whit: to go on: %s", next_command);
     end_said = error_said = 1;

@@ -189,6 +189,7 @@ static whit_result load_named(const whit_log *log, const char *path, bool piped,
     if (scene->lights_wanted == WHIT_LIGHTS_NONE || scene->lights_wanted == WHIT_LIGHTS_KEY)
         scene_drop_lights(scene);
     scene->log = log_or_silence(log);
+    scene->roots.found = NULL;
     tell_refused(&scene->roots, params);
     if (result == WHIT_OK)
         result = scene_freeze(scene);

@@ -297,8 +297,8 @@ static whit_result render_band(struct renderer *renderer, uint32_t band_y,
     uint32_t listed = 0;
     if (progress->listed) {
         whit_result result = adaptive_list(&renderer->picture, progress, block, end, &listed);
-        if (result != WHIT_OK)
-            return result;
+        if (result != WHIT_OK || listed == 0)
+            return result == WHIT_OK ? render_stop_asked(renderer, progress) : result;
         block = 0;
         end = blocks_of(listed);
     }

@@ -291,13 +291,13 @@ void engine_forget_error(struct engine *engine)
     engine->status.error[0] = engine->status.errors[0] = '\0';
 }
 
-/* Keeps the files of a scene that was loaded for this job, which no other session has. */
+/* Keeps the files of the scene that could not be loaded for this job, which no other session has.
+ */
 static void keep_unread(struct engine *engine, const struct engine_job *job)
 {
     struct scene_ref *ref = job->session->scene;
     if (job->reloads || job->scene || !ref)
         return;
-    file_list_finish(&engine->unread);
     engine->unread = ref->files;
     ref->files = (struct file_list){0};
 }
@@ -308,6 +308,7 @@ void engine_reap_job(struct engine *engine)
     if (!job || !job->done)
         return;
     engine->job = NULL;
+    file_list_finish(&engine->unread);
     if (!job->scene)
         memcpy(engine->status.refused, job->session->refused, sizeof engine->status.refused);
     if (job->result == WHIT_OK) {

@@ -179,7 +179,7 @@ bool scenes_refuse(struct view *view)
     /* The scene is read again when one of its files is mended, or comes. A sky that was dropped is
        given up instead. */
     if (strcmp(settings->environment, back->environment) == 0) {
-        memcpy(view->asked, settings->scene, sizeof view->asked);
+        set_asked(view, settings->scene);
         engine_watch_unread(view->engine, view->watch_asked);
     }
     settings->reload = back->reload;

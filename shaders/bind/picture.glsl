@@ -89,7 +89,7 @@ bool is_in_picture(uvec2 at)
 }
 
 // With SPEC_VIEWS: copies the camera of the slot's view into the frame. Slots of a subgroup lie in
-// one block, and so in one view.
+// one block, and so in one view: lists are never of views.
 void load_view(uint slot)
 {
     view = views[slot_place(slot).y / view_rows()];

@@ -85,9 +85,10 @@ static bool find_file(const struct suite *suite, const struct check_case *item, 
     char *path = roots_join(suite->roots.named, name);
     errno = 0;
     enum reach reach = path ? roots_reach(&suite->roots, path) : REACH_MISSING;
+    bool needed = !suite->needs || suite->needs(suite->user, item->name);
     bool fits = path && strlen(path) < name_bytes;
     bool good = false;
-    if (reach == REACH_MISSING && suite->needs && !suite->needs(suite->user, item->name))
+    if (reach == REACH_MISSING && !needed)
         reach = REACH_FILE;
     if (!path)
         cli_misuse(reader, "out of memory");
@@ -95,7 +96,7 @@ static bool find_file(const struct suite *suite, const struct check_case *item, 
         cli_misuse(reader, "%s`-`: standard input is not the suite's", option);
     else if (reach == REACH_OUTSIDE)
         cli_misuse(reader, "%s`%s`: it lies outside of the suite's folder", option, name);
-    else if (!leads_down(name))
+    else if (needed && !leads_down(name))
         cli_misuse(reader, "%s`%s`: a name from the suite's folder down, without `..`, is needed",
                    option, name);
     else if (reach != REACH_FILE)

@@ -314,15 +314,21 @@ static whit_result smooth_edges(const struct choosing *choosing, struct cost_kep
     double visible = result == WHIT_OK ? visible_share(contrasts, count) : 0.0;
     uint32_t most = 4 * tried.choice.samples;
     best_ms = least_ms;
-    for (int i = 0; result == WHIT_OK && best_ms < ENOUGH * budget_ms && i < EDGE_TRIES; ++i) {
+    best->tried_ms = fmax(best->tried_ms, least_ms);
+    for (int i = 0;
+         result == WHIT_OK && visible > 0.0 && best_ms < ENOUGH * budget_ms && i < EDGE_TRIES;
+         ++i) {
         if (share > 2.0 * visible && 4 * most <= EDGE_SAMPLES_MAX) {
             share /= 5.0; /* 4 and then 16 samples more */
             most *= 4;
         }
         share = fmin(share, visible);
-        double contrast = sample_quantile(contrasts, count, 1.0 - share);
+        double contrast = fmax(sample_quantile(contrasts, count, 1.0 - share), CONTRAST_MIN);
+        contrast = ceil(contrast * 1e3) / 1e3;
+        if (tried.choice.samples_most == most && tried.choice.contrast == contrast)
+            break; /* that was tried */
         tried.choice.samples_most = most;
-        tried.choice.contrast = ceil(fmax(contrast, CONTRAST_MIN) * 1e3) / 1e3;
+        tried.choice.contrast = contrast;
         result = set_choice(choosing, &tried.choice);
         if (result == WHIT_OK)
             result = time_whole(choosing, &tried.tried_ms);
@@ -331,7 +337,7 @@ static whit_result smooth_edges(const struct choosing *choosing, struct cost_kep
             best_ms = tried.tried_ms;
         }
         /* The strongest edges take the most time, so less of it is saved than of the edges. */
-        double ratio = (0.95 * aim_ms - least_ms) / fmax(tried.tried_ms - least_ms, 0.0);
+        double ratio = (0.95 * aim_ms - least_ms) / fmax(tried.tried_ms - least_ms, 1e-3);
         share *= ratio < 1.0 ? pow(ratio, 1.5) : fmin(ratio, 3.0);
     }
     free(contrasts);

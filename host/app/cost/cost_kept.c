@@ -124,7 +124,8 @@ static bool read_choice(const json_t *object, struct cost_kept_choice *kept)
     kept->choice.bailout = document_read_number(object, "bailout", 0.0);
     kept->choice.found = true;
     return kept->budget_ms > 0.0 && kept->choice.contrast >= 0.0 && kept->choice.contrast <= 1.0 &&
-           samples >= 1 && samples <= WHIT_SAMPLES_MAX && most >= 0 && most <= WHIT_SAMPLES_MAX;
+           samples >= 1 && samples <= WHIT_SAMPLES_MAX &&
+           (kept->choice.contrast == 0.0 || most == 4 * samples || most == 16 * samples);
 }
 
 /* Takes over `root`. */
