@@ -123,6 +123,7 @@ static struct {
     bool changed, wraps;
     bool grows;                 // the current panel takes its size from its content
     bool crowded;               // an opened panel covers another for want of room
+    bool releases;              // a button was pressed in this frame, and is released in the next
     bool has_menu, closes_menu; // a list of choices is open; it is to be closed
     bool had_menu;              // has_menu of the frame before
     int again;
@@ -491,10 +492,10 @@ bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
     ImGuiIO &io = ImGui::GetIO();
     io.DisplaySize = ImVec2((float)width, (float)height);
     io.DeltaTime = seconds > 1e-4 ? (float)seconds : 1e-4f;
-    layout.changed = layout.crowded = false;
+    layout.changed = layout.crowded = layout.releases = false;
     for (int i = 0; i < 3; ++i) {
         io.MouseDown[i] = ui->pressed[i] || ui->down[i];
-        layout.changed |= io.MouseDown[i] != ui->down[i]; // the release needs another frame
+        layout.releases |= io.MouseDown[i] != ui->down[i];
         ui->pressed[i] = false;
     }
     ++layout.frame;
@@ -516,10 +517,11 @@ bool ui_end(struct ui *ui)
     return give_back(ui);
 }
 
-// At most AGAIN_MAX times: numbers may change their width in every frame.
+// At most AGAIN_MAX times, since numbers may change their width in every frame; but the release of
+// a button always needs another frame.
 bool ui_wants_again(const struct ui *)
 {
-    return layout.again > 0 && layout.again < AGAIN_MAX;
+    return layout.releases || (layout.again > 0 && layout.again < AGAIN_MAX);
 }
 
 bool ui_is_crowded(const struct ui *)
