@@ -14,7 +14,7 @@ enum { SMALL_SHRINK = 4, SMALL_SIDE = 16, PROBES = 6 };
 /* Shares of the requested time: for references and the pictures judged by them; for the row of the
    usual settings. */
 static const double REFERENCE_SHARE = 0.35, USUAL_SHARE = 0.1;
-/* What is left of a time limit that has passed: 0 would be none. */
+/* A time limit that has passed leaves this time, since 0 means that there is no limit. */
 static const double LEFT_MIN_S = 1e-6;
 /* Added to limits given as multiples of the usual time: four times as many samples take a little
    more than four times as long. */

@@ -291,8 +291,7 @@ void engine_forget_error(struct engine *engine)
     engine->status.error[0] = engine->status.errors[0] = '\0';
 }
 
-/* Keeps the files of the scene that could not be loaded for this job, which no other session has.
- */
+/* Keeps the files of the scene that this job could not load. No other session has them. */
 static void keep_unread(struct engine *engine, const struct engine_job *job)
 {
     struct scene_ref *ref = job->session->scene;

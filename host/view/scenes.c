@@ -133,7 +133,7 @@ void view_open(struct view *view, const char *path)
     if (skies_drop(view, path))
         return;
     if (path_is(path, "png")) {
-        /* Its functions need the answer of the user, whom `whit view` asks on the terminal. */
+        /* A picture may hold functions of a shader. Only `whit view` asks whether they may run. */
         view_say(view, "%s is a picture; `whit view %s` shows what it was made from",
                  path_name(path), path_name(path));
         return;

@@ -90,7 +90,7 @@ END
     python3 "$(dirname "$0")/pointer.py" &
     wanders=$!
     play "files elsewhere, allowed" model/a.obj --size 400x160 <<END
-allowed: until question, still, choose allow | question = | frame.ids = $ids | render has --allow-path $maps
+allowed: until question, choose allow | question = | frame.ids = $ids | render has --allow-path $maps
 END
     kill $wanders || echo "SKIPPED part: no python3 or libX11 moved the pointer"
     wait $wanders 2>/dev/null
