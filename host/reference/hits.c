@@ -16,7 +16,6 @@
    of the traversal. */
 #define BOX_GROWTH          0x1p-40
 #define BOX_GROWTH_INSTANCE 0x1p-20
-#define STOPS_OF_ABSORPTION 92.33248261893118 /* 64 / ln 2 */
 
 enum mode { MODE_CLOSEST, MODE_NEXT, MODE_SHADOW };
 
@@ -88,9 +87,9 @@ static bool is_solid(const struct search *s, const struct candidate *m,
 static double stops_of(const struct reference *reference, double kept)
 {
     if (!(kept > 0.0))
-        return reference->params.whole_stops ? 65535.0 : INFINITY;
+        return reference->params.whole_stops ? FILTER_DEPTH_OPAQUE : INFINITY;
     double stops = fmax(-SHADOW_DEPTH_SCALE * same_log2(kept), 0.0);
-    return reference->params.whole_stops ? floor(stops + 0.5) : stops;
+    return FILTER_DEPTH_OF_RECORD * (reference->params.whole_stops ? floor(stops + 0.5) : stops);
 }
 
 /* The share of light that a filter transmits: 1 - cover passes beside the surface, the rest through
@@ -124,7 +123,7 @@ static void add_filter(struct search *s, const struct candidate *m,
         return;
     if (!detail && reference->params.whole_stops) {
         for (int c = 0; c < 3; ++c)
-            s->stops[c] += record->shadow >> (10 * c) & 1023u;
+            s->stops[c] += (record->shadow >> (10 * c) & 1023u) * FILTER_DEPTH_OF_RECORD;
         return;
     }
     struct surface place = surface_texture_place(reference, instance, m, record);
@@ -133,8 +132,8 @@ static void add_filter(struct search *s, const struct candidate *m,
     s->stops[1] += stops_of(reference, kept.y);
     s->stops[2] += stops_of(reference, kept.z);
     for (int c = 0; detail && !place.material->thin_walled && c < 3; ++c) {
-        double absorbed =
-            (double)place.material->absorption[c] * (s->filter_end - m->t) * STOPS_OF_ABSORPTION;
+        double absorbed = (double)place.material->absorption[c] * (s->filter_end - m->t) *
+                          FILTER_DEPTH_OF_ABSORPTION;
         if (reference->params.whole_stops)
             absorbed = floor(absorbed + 0.5);
         s->stops[c] += m->front ? absorbed : -absorbed;

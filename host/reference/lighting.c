@@ -10,8 +10,7 @@
 #include "reference/media.h"
 #include "reference/tree.h"
 
-#define SMOOTH_COSINE       0.7071067811865476 /* 45 degrees: above it a mesh is not smooth */
-#define STOPS_OF_ABSORPTION 92.33248261893118  /* 64 / ln 2 */
+#define SMOOTH_COSINE 0.7071067811865476 /* 45 degrees: above it a mesh is not smooth */
 
 /* The hit point that shadow rays start from: data that all shadow rays of the hit share. */
 struct receiver {
@@ -60,11 +59,11 @@ static struct dvec3 share_of(const struct reference *reference, const struct rec
     double share[3];
     double around[3] = {at->absorption.x, at->absorption.y, at->absorption.z};
     for (int c = 0; c < 3; ++c) {
-        double stops = around[c] * shadow->filter_end * STOPS_OF_ABSORPTION;
+        double stops = around[c] * shadow->filter_end * FILTER_DEPTH_OF_ABSORPTION;
         if (reference->params.whole_stops)
             stops = floor(stops + 0.5);
         stops = fmax(shadow->stops[c] + stops, 0.0);
-        share[c] = same_pow(2.0, -stops / SHADOW_DEPTH_SCALE);
+        share[c] = same_pow(2.0, -stops / FILTER_DEPTH_SCALE);
     }
     return d3(share[0], share[1], share[2]);
 }

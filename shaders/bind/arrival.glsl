@@ -69,7 +69,7 @@ vec3 passing_share(Hit blocker, vec3 absorption)
     ivec3 depth = blocker.filter_depth;
     if (SPEC_FILTER_DETAIL != FILTERS_PLAIN && SPEC_ABSORPTION != 0u)
         depth = max(depth + absorption_depth(absorption, blocker.filter_end), ivec3(0));
-    return exp2(vec3(depth) * (-1.0 / SHADOW_DEPTH_SCALE));
+    return exp2(vec3(depth) * (-1.0 / FILTER_DEPTH_SCALE));
 }
 
 // Sums over the points of a flat emitter. Its diffuse light is computed for the whole polygon; the

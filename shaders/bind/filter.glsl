@@ -1,5 +1,5 @@
 // Light that shadow rays lose in filters that vary over their surface: filters with textures or
-// vertex colours, and bodies that absorb. In 1/64 stops, as integers, whose sum does not depend on
+// vertex colours, and bodies that absorb. In 1/1024 stops, as integers, whose sum does not depend on
 // the order in which a ray hits the filters.
 #ifndef BIND_FILTER_GLSL
 #define BIND_FILTER_GLSL
@@ -22,14 +22,13 @@ float filter_end(vec3 origin, float t_max)
     return t_max < FLOAT_LARGEST ? min(t_max, behind) : 0.0;
 }
 
-const float DEPTH_OF_ABSORPTION = 92.3324826; // 64 / ln 2
 // Depths from 2^29 on grow by 2^24 for each doubling, so that they do not overflow, and a surface
 // behind another still has another depth. Sums may wrap around and back.
 const float DEPTH_LINEAR = 536870912.0, DEPTH_MAX = 2305843009213693952.0; // 2^29, 2^61
 
 ivec3 absorption_depth(vec3 absorption, float way)
 {
-    vec3 depth = min(absorption * (abs(way) * DEPTH_OF_ABSORPTION), vec3(DEPTH_MAX));
+    vec3 depth = min(absorption * (abs(way) * FILTER_DEPTH_OF_ABSORPTION), vec3(DEPTH_MAX));
     ivec3 above = max(floatBitsToInt(depth) - floatBitsToInt(DEPTH_LINEAR), ivec3(0));
     ivec3 whole = ivec3(floor(min(depth, vec3(DEPTH_LINEAR)) + 0.5)) + 2 * above;
     return way < 0.0 ? -whole : whole;
@@ -51,12 +50,12 @@ vec3 surrounding_absorption(uvec4 media)
     return sum;
 }
 
-// The optical depth, in 1/64 stops, of a filter that lets the share `kept` pass; for a share of 0
-// nothing passes.
+// The optical depth, in 1/1024 stops, of a filter that lets the share `kept` pass, rounded as in
+// records of filters that do not vary; for a share of 0 nothing passes.
 ivec3 filter_depth(vec3 kept)
 {
-    vec3 depth = floor(-64.0 * log2(max(kept, vec3(1e-30))) + 0.5);
-    return ivec3(mix(max(depth, vec3(0.0)), vec3(65535.0), lessThanEqual(kept, vec3(0.0))));
+    vec3 depth = FILTER_DEPTH_OF_RECORD * floor(-SHADOW_DEPTH_SCALE * log2(max(kept, vec3(1e-30))) + 0.5);
+    return ivec3(mix(max(depth, vec3(0.0)), vec3(FILTER_DEPTH_OPAQUE), lessThanEqual(kept, vec3(0.0))));
 }
 
 // The optical depth of a filter at a point (see traverse.glsl). The share that passes is that of

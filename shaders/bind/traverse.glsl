@@ -11,7 +11,7 @@
 // its texture coordinates (sphere_uv), here and below.
 bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 
-// Defined by the kernel: the optical depth, in units of 1/64 stop, that a filter with
+// Defined by the kernel: the optical depth, in units of 1/1024 stop, that a filter with
 // TRIANGLE_FILTER_DETAIL adds to a shadow ray that hits it from the front or from behind. `way`:
 // the distance from there to the filter_end of the ray. `own`: the depth in its record. A surface
 // where the ray enters or leaves a medium may add a negative depth; a sum below 0 counts as 0.
@@ -279,7 +279,7 @@ bool is_reached(const uint mode, Candidate m, uint flags, uint instance, uint pr
 void add_filter(Candidate m, vec2 uv, uint flags, uint shadow, uint instance, uint primitive,
                 inout Hit hit)
 {
-    ivec3 depth = ivec3(uvec3(shadow & 1023u, (shadow >> 10) & 1023u, (shadow >> 20) & 1023u));
+    ivec3 depth = (ivec3(shadow, shadow >> 10, shadow >> 20) & 1023) * FILTER_DEPTH_OF_RECORD;
     if (SPEC_FILTER_DETAIL != FILTERS_PLAIN && (flags & TRIANGLE_FILTER_DETAIL) != 0u)
         depth = filter_detail(instance, primitive, uv.x, uv.y, hit.filter_end - m.t, m.front,
                               depth);

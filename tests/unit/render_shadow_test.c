@@ -3,9 +3,10 @@
 #include "unit.h"
 
 static const double eye_height = 8.0, view = 0.6; /* see dark_scene */
-/* Optical depths are rounded to multiples of 1/64 stop, so that they are off by half of it at most.
- */
-static const double half_a_step = 0.5 / 64.0 * 0.69314718056;
+/* Depths of filters are rounded to multiples of 1/64 stop, those of absorption to 1/1024 stop, so
+   that they are off by half of it at most. */
+static const double half_a_step = 0.5 / 64.0 * 0.69314718056,
+                    absorbed_half_a_step = 0.5 / 1024.0 * 0.69314718056;
 
 /* The sun is at 45 degrees, so that the camera sees the shadow of the pane, but not the pane. */
 static struct scene *pane_scene(bool blends)
@@ -92,7 +93,7 @@ static struct scene *block_scene(const struct block *block, float density)
     return scene;
 }
 
-/* The share exp(-sigma length) of the light arrives, within 1/64 stop for rounding at each end of
+/* The share exp(-sigma length) of the light arrives, within 1/1024 stop for rounding at each end of
    the way through the glass. */
 TEST_BY_TURNS(bodies_absorb_along_the_way, 1, 4)
 {
@@ -119,7 +120,7 @@ TEST_BY_TURNS(bodies_absorb_along_the_way, 1, 4)
         print_message("  %s\n", b->name);
         for (int c = 0; c < 3; ++c) {
             assert_near(image.pixels[c], b->light * exp(-(double)sigma[c] * (b->length + b->seen)),
-                        2.0 * half_a_step + 1e-5);
+                        2.0 * absorbed_half_a_step + 1e-5);
             assert_near(dark.pixels[c], 0.0, 1e-5);
         }
     }
