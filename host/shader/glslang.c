@@ -201,13 +201,31 @@ static void check_module(struct compilation *c, struct spv_module *m)
     report(c, (struct spv_place){0, 0}, why);
 }
 
+/* Reports functions of the user's whose end can be reached without a result. */
+static void check_returns(struct compilation *c, struct spv_module *m)
+{
+    for (size_t at = m->functions_at; at < m->count; at += spv_length(m->words + at)) {
+        const uint32_t *words = m->words + at;
+        char why[SHADER_REASON_BYTES];
+        spv_follow(m, words);
+        if (spv_op(words) != OP_FUNCTION || !m->user_function || !returns_lacks(m, words))
+            continue;
+        const char *name = spv_name(m, words[2]);
+        snprintf(why, sizeof why, "function '%.*s' does not return a value on every path",
+                 (int)strcspn(name, "("), name);
+        report(c, m->place, why);
+    }
+}
+
 /* Rewrites returns in the user's functions (returns.h). No words in the result: no memory. */
 static struct spv_words rewrite_returns(struct compilation *c, const uint32_t *words, size_t count)
 {
     struct spv_module m;
     struct spv_words out = {0};
-    if (spv_read(&m, words, count, c->question->own))
+    if (spv_read(&m, words, count, c->question->own)) {
+        check_returns(c, &m);
         out = returns_rewrite(&m);
+    }
     if (m.failed)
         out.count = 0;
     spv_finish(&m);

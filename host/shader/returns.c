@@ -174,6 +174,47 @@ static void take(struct returns *r, struct spv_module *m, const uint32_t *words)
     }
 }
 
+/* Marks the blocks that the end of a block leads to. A constant condition leads one way. */
+static void mark(const struct spv_module *m, const uint32_t *words, bool *reached)
+{
+    uint32_t op = spv_op(words);
+    if (op == OP_BRANCH) {
+        reached[words[1]] = true;
+    } else if (op == OP_BRANCH_CONDITIONAL) {
+        const uint32_t *condition = spv_def(m, words[1]);
+        uint32_t known = condition ? spv_op(condition) : OP_NOP;
+        reached[words[2]] = reached[words[2]] || known != OP_CONSTANT_FALSE;
+        reached[words[3]] = reached[words[3]] || known != OP_CONSTANT_TRUE;
+    } else if (op == OP_SWITCH) {
+        for (uint32_t i = 2; i < spv_length(words); i += 2) {
+            if (words[i] < m->bound) /* else a literal of 64 bits, which link.c refuses */
+                reached[words[i]] = true;
+        }
+    }
+}
+
+/* A block stands behind all blocks that lead to it, but for those that lead back to a loop that has
+   begun. So one pass finds the blocks that can be reached. */
+bool returns_lacks(struct spv_module *m, const uint32_t *function)
+{
+    const uint32_t *at = function;
+    bool *reached = array_alloc_zeroed(m->bound, sizeof *reached), alive = true, lacks = false;
+    m->failed = m->failed || !reached;
+    for (bool first = true; reached && spv_op(at) != OP_FUNCTION_END; at += spv_length(at)) {
+        uint32_t op = spv_op(at);
+        const uint32_t *value = op == OP_RETURN_VALUE ? spv_def(m, at[1]) : NULL;
+        if (op == OP_LABEL) {
+            alive = first || reached[at[1]];
+            first = false;
+        } else if (alive) {
+            mark(m, at, reached);
+            lacks = lacks || (value && spv_op(value) == OP_UNDEF);
+        }
+    }
+    free(reached);
+    return lacks;
+}
+
 struct spv_words returns_rewrite(struct spv_module *m)
 {
     struct returns r = {.open = NULL};

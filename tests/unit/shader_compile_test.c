@@ -254,7 +254,38 @@ static const struct {
     {"float f(float x, int n) {\n  return dFdx(x);\n}\n", 2, "dFdx"},
     {"float f(float x, int n) {\n  return float(gl_FragCoord.x);\n}\n", 2, "gl_FragCoord"},
     {"#extension_of mine\n" FINE, 1, "directive"},
+    {"float f(float x, int n) { if (x > 0.0) return x; }\n", 1,
+     "function 'f' does not return a value on every path"},
+    {"\n\nfloat f(float x, int n)\n{\n  switch (n) { case 0: return 1.0; case 1: return 2.0; "
+     "}\n}\n",
+     3, "'f' does not return"},
+    {"float f(float x, int n) { while (true) { if (n > 3) break; return 1.0; } }\n", 1,
+     "'f' does not return"},
+    {"float f(float x, int n) { for (int i = 0; i < n; ++i) return 1.0; }\n", 1,
+     "'f' does not return"},
 };
+
+/* The end of none of these functions can be reached. */
+TEST_IN(functions_that_return_on_every_path_are_taken, compiler_begin, compiler_end)
+{
+    static const char *const bodies[] = {
+        "if (x > 0.0) return 1.0; else return 2.0;",
+        "if (x > 0.0) { if (x > 1.0) return 1.0; else return 2.0; } else { return 3.0; }",
+        "while (true) { if (n > 3) return x; n++; }",
+        "do { if (n > 3) return x; n++; } while (true);",
+        "for (;;) { switch (n) { case 0: return x; case 1: n++; break; default: n--; } }",
+        "switch (n) { case 0: return 1.0; case 1: default: return 2.0; }",
+        "switch (n) { case 0: if (x > 1.0) return 1.0; else return 2.0; default: return 2.0; }",
+        "if (true) return x;",
+        "while (true) { if (x > 3.0) { while (true) { if (n > 9) return x; n++; } } x++; }",
+        "{ return x; } n = 3;"};
+    for (size_t i = 0; i < sizeof bodies / sizeof *bodies; ++i) {
+        char text[256];
+        snprintf(text, sizeof text, "float f(float x, int n) { %s }\n", bodies[i]);
+        own_shader_code code = must_compile(text);
+        assert_valid(&code);
+    }
+}
 
 /* The line of a text, without its end. */
 static void copy_line(const char *text, uint32_t line, char *out, size_t bytes)
