@@ -1,6 +1,7 @@
 #include "shader/text.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -330,6 +331,29 @@ static whit_result read_include(struct reading *r, uint32_t file, struct scan *s
     return follow_include(r, file, line, name);
 }
 
+/* Refuses a byte of a character beyond ASCII, which is not GLSL outside of comments and strings. */
+static whit_result refuse_character(struct reading *r, uint32_t file, const struct scan *scan)
+{
+    const char *first = scan->at - 1, *line = first;
+    const unsigned char *byte = (const unsigned char *)first;
+    char shown[WHIT_SHOWN_BYTES];
+    size_t length = whit_text_next(first, shown);
+    uint32_t number = byte[0] & 0xffu >> (length + 1);
+    for (size_t i = 1; i < length; ++i)
+        number = number << 6 | (byte[i] & 63u);
+    while (line > r->text->files[file].text && line[-1] != '\n')
+        --line;
+    struct shader_error error = {.line = scan->token_line, .column = (uint32_t)(first - line) + 1};
+    snprintf(error.file, sizeof error.file, "%s", r->text->files[file].name);
+    if (length > 1)
+        snprintf(error.reason, sizeof error.reason, "the character '%.*s' (U+%04X) is not GLSL",
+                 (int)length, first, number);
+    else
+        snprintf(error.reason, sizeof error.reason, "the byte 0x%02X is not GLSL", byte[0]);
+    shader_error_put(r->log, r->errors, &error);
+    return WHIT_ERROR_INPUT;
+}
+
 /* Strings other than names in #include occur in #error alone. Comment marks in them are refused, as
    glslang and scan.c might disagree about them. */
 static whit_result check_token(struct reading *r, uint32_t file, struct scan *scan,
@@ -344,6 +368,8 @@ static whit_result check_token(struct reading *r, uint32_t file, struct scan *sc
         return at(r, file, scan->token_line, "a comment in a string");
     if (scan->kind == SCAN_WORD && refused_word(scan->text))
         return at(r, file, scan->token_line, refused_word(scan->text));
+    if (scan->kind == SCAN_SIGN && (unsigned char)scan->text[0] > 127)
+        return refuse_character(r, file, scan);
     if (scan_is(scan, SCAN_SIGN, "#"))
         return at(r, file, scan->token_line,
                   "# stands at the start of a line alone, and ## nowhere");

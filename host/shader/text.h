@@ -41,9 +41,10 @@ struct shader_text {
 /* Reads `path` and what it includes: regular files below the folder of `path`, links resolved.
    Errors that name the include and its line: a file that is missing, outside, not regular, or over
    the limits; a file that includes itself. Errors that name the file and line: bytes 0 and others
-   that are no text, #version, #extension, #line, a comment or an #if without end, an #endif too
-   many. A file without any function is refused. WHIT_ERROR_INPUT, _MEMORY; *text is then empty.
-   `errors` may be NULL. Free it by shader_text_free. */
+   that are no text, characters beyond ASCII outside of comments and strings, #version, #extension,
+   #line, a comment or an #if without end, an #endif too many. A file without any function is
+   refused. WHIT_ERROR_INPUT, _MEMORY; *text is then empty. `errors` may be NULL. Free it by
+   shader_text_free. */
 WHIT_CHECK whit_result shader_text_read(const whit_log *log, const char *path,
                                         struct shader_text *text, struct shader_errors *errors);
 

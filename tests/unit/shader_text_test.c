@@ -224,8 +224,33 @@ TEST_IN(what_is_no_text_is_refused_with_its_line, begin, end)
     assert_text_refused("", 0, "no function");
     assert_text_refused("// nothing\n/* at all */\nconst float x = 1.0;\n", 0, "no function");
     assert_text_refused("float f();\nstruct S { float x; };\n", 0, "no function");
-    put_text("a.glsl", "\xef\xbb\xbf#define \xc3\x84 1\r\n// \xc3\xa4\r\n" FUNCTION);
+    put_text("a.glsl", "\xef\xbb\xbf#define X \"\xc3\x84\"\r\n// \xc3\xa4\r\n" FUNCTION);
     assert_int_equal(read_first(), WHIT_OK);
+}
+
+TEST_IN(characters_beyond_ascii_are_refused_with_their_column, begin, end)
+{
+    static const struct {
+        uint32_t line, column;
+        const char *content, *reason;
+    } cases[] = {
+        {2, 11, FUNCTION "float a = \xe2\x88\x92 1.0;\n",
+         "the character '\xe2\x88\x92' (U+2212) is not GLSL"},
+        {1, 9, "float gr\xc3\xb6() { return 1.0; }\n", "the character '\xc3\xb6' (U+00F6)"},
+        {1, 9, "#define \xc3\x84 1\n" FUNCTION, "U+00C4"},
+        {3, 1, "/* \xc3\xa4 */ // \xfc\n\n\xf0\x9f\x98\x80\n" FUNCTION, "U+1F600"},
+        {1, 2, " \xfc\n" FUNCTION, "the byte 0xFC is not GLSL"},
+        {1, 1, "\xc3", "the byte 0xC3 is not GLSL"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        put_text("a.glsl", cases[i].content);
+        assert_int_equal(read_first(), WHIT_ERROR_INPUT);
+        assert_int_equal(errors.count, 1);
+        assert_int_equal(errors.items[0].line, cases[i].line);
+        assert_int_equal(errors.items[0].column, cases[i].column);
+        if (!strstr(errors.items[0].reason, cases[i].reason))
+            fail_msg("\"%s\" is not in \"%s\"", cases[i].reason, errors.items[0].reason);
+    }
 }
 
 TEST_IN(what_is_whits_own_is_refused_with_its_line, begin, end)
