@@ -187,27 +187,37 @@ static bool read_slider_value(struct line *line, whit_slider *slider,
     return read_slider_choice(line, slider, texts);
 }
 
-/* Whether some shader of whit's own has a function of that name, which no global variable may
-   have. */
-static bool is_function(const char *name)
+/* Whether users' text is compiled behind this file of whit's, with its records and macros. */
+static bool is_before_users(const char *path)
 {
-    char call[SHADER_NAME_BYTES + 2];
-    snprintf(call, sizeof call, " %s(", name);
+    return strcmp(path, "hook/interface.glsl") == 0 || strcmp(path, "lib/records.glsl") == 0 ||
+           strcmp(path, "lib/optics.glsl") == 0;
+}
+
+/* Whether no global variable may have the name: some shader of whit's own has a function of that
+   name, or a record or macro of that name stands before the user's text. */
+static bool is_own(const char *name)
+{
+    size_t length = strlen(name);
     for (uint32_t i = 0; i < shader_source_count; ++i) {
-        const char *text = shader_sources[i].text;
-        if (strcmp(shader_sources[i].path, "hook/aov.glsl") == 0 || /* not part of any kernel */
-            strcmp(shader_sources[i].path, "hook/intersect.glsl") == 0 ||
-            strncmp(shader_sources[i].path, "examples/", 9) == 0)
+        const char *text = shader_sources[i].text, *path = shader_sources[i].path;
+        if (strcmp(path, "hook/aov.glsl") == 0 || /* not part of any kernel */
+            strcmp(path, "hook/intersect.glsl") == 0 || strncmp(path, "examples/", 9) == 0)
             continue;
-        for (const char *at = strstr(text, call); at; at = strstr(at + 1, call)) {
+        for (const char *at = strstr(text, name); at; at = strstr(at + 1, name)) {
             const char *begin = at;
+            if (at == text || at[-1] != ' ' || !strchr(" (\n", at[length]))
+                continue;
             while (begin > text && begin[-1] != '\n')
                 --begin;
-            if (isalpha((unsigned char)*begin))
+            bool function = at[length] == '(' && isalpha((unsigned char)*begin);
+            bool other = (at == begin + 7 && strncmp(begin, "struct ", 7) == 0) ||
+                         (at == begin + 8 && strncmp(begin, "#define ", 8) == 0);
+            if (function || (other && is_before_users(path)))
                 return true;
         }
     }
-    return false;
+    return strncmp(name, "HAS_", 4) == 0; /* a kernel's defines */
 }
 
 /* Whether GLSL has or reserves the word (The OpenGL Shading Language 4.60, 3.6 Keywords). */
@@ -250,8 +260,8 @@ static bool is_new_name(const struct line *line, const char *name)
         complain(line, "`%s` is a word of GLSL: another name is needed", name);
         return false;
     }
-    if (is_function(name)) {
-        complain(line, "`%s` is a function of whit's: another name is needed", name);
+    if (is_own(name)) {
+        complain(line, "`%s` is a name of whit's: another name is needed", name);
         return false;
     }
     for (uint32_t i = 0; i < shader->slider_count; ++i) {
