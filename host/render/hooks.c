@@ -246,9 +246,14 @@ void hooks_describe_fuel(const struct target *target, char *text, size_t text_by
     const char *file = "";
     const whit_shader *shader = target->renderer->params.shader;
     text[0] = 0;
-    if (shader && shader_find_loop(shader, read_status(target, STATUS_LOOP_AT), &file, &line))
+    if (!shader || !shader_find_loop(shader, read_status(target, STATUS_LOOP_AT), &file, &line))
+        return;
+    if (shader->fuel < SHADER_FUEL_MAX)
         snprintf(text, text_bytes, ": %s:%u: `//@ fuel N` gives it more than %u, up to %d", file,
                  line, shader->fuel, SHADER_FUEL_MAX);
+    else
+        snprintf(text, text_bytes, ": %s:%u: it has the most fuel, %d; --trust sets no limit", file,
+                 line, SHADER_FUEL_MAX);
 }
 
 void hooks_describe_shape(const struct target *target, char *text, size_t text_bytes)

@@ -65,7 +65,8 @@ whit_result status_check(struct target *target)
         {STATUS_NON_FINITE, "radiance is not finite"},
         {STATUS_MEDIUM_STACK_OVERFLOW, "a ray was in more media at once than its stack holds"},
         {STATUS_UNFINISHED_LOOP, "a loop over lights was cut short (the driver ends long loops)"},
-        {STATUS_FUEL, "a loop of the shader took more iterations than it may"},
+        {STATUS_FUEL,
+         "all loops in one call of the shader took more iterations together than it may"},
         {STATUS_CUT_LOOPS,
          "loops of the shader, with whit's own in trace(), visible() and the kernel "
          "around it, took more iterations than the driver allows all loops of a "

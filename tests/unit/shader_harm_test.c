@@ -246,7 +246,8 @@ TEST_IN(loops_without_end_have_no_picture, begin, end)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         char sliders[32];
         snprintf(sliders, sizeof sliders, "loop=%s", cases[i].name);
-        fail_to_draw(shader, sliders, cases[i].place, "fuel");
+        fail_to_draw(shader, sliders, cases[i].place,
+                     "`//@ fuel N` gives it more than 10000, up to 30000");
     }
     all_are_reported();
 }
@@ -258,7 +259,8 @@ TEST_IN(all_of_the_most_fuel_may_be_used, begin, end)
                                    "  color.r += 1e-9;\n return color; }\n");
     float pixels[PIXELS * 4];
     assert_int_equal(draw(shader, NULL, pixels), WHIT_OK);
-    fail_to_draw(shader, "more=on", "a.glsl:4:", "fuel");
+    fail_to_draw(shader, "more=on", "a.glsl:4:", "it has the most fuel, 30000; --trust");
+    assert_non_null(strstr(messages.text, "all loops in one call of the shader took more"));
     all_are_reported();
 }
 
