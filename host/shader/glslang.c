@@ -69,7 +69,8 @@ static glslang_program_t *link_program(struct compilation *c, glslang_shader_t *
         glslang_program_SPIRV_generate_with_options(program, GLSLANG_STAGE_COMPUTE, &options);
         return program;
     }
-    messages_take(&c->answer, c->question, glslang_program_get_info_log(program));
+    messages_take(&c->answer, c->question, glslang_shader_get_preprocessed_code(shader),
+                  glslang_program_get_info_log(program));
     glslang_program_delete(program);
     return NULL;
 }
@@ -81,7 +82,7 @@ static glslang_program_t *compile_glsl(struct compilation *c)
     glslang_shader_t *shader = glslang_shader_create(&input);
     if (shader && glslang_shader_preprocess(shader, &input) && glslang_shader_parse(shader, &input))
         return link_program(c, shader);
-    messages_take(&c->answer, c->question, shader ? glslang_shader_get_info_log(shader) : "");
+    messages_take(&c->answer, c->question, "", shader ? glslang_shader_get_info_log(shader) : "");
     return NULL;
 }
 

@@ -212,10 +212,22 @@ static bool is_hook(const char *name)
     return false;
 }
 
+static bool has_body(const char *text, const char *name)
+{
+    struct scan scan;
+    struct scan_functions functions = {.braces = 0};
+    scan_begin(&scan, text, strlen(text));
+    while (scan_next_function(&scan, &functions)) {
+        if (strcmp(functions.name, name) == 0)
+            return true;
+    }
+    return false;
+}
+
 /* Errors about functions, which glslang reports after all text, with their names in the next
    line. */
 static bool take_function(struct glslang_answer *answer, const struct glslang_question *question,
-                          const char *line, const char *next)
+                          const char *preprocessed, const char *line, const char *next)
 {
     char name[256], called[256] = "", why[SHADER_REASON_BYTES];
     uint32_t file = 0, at = 0;
@@ -232,6 +244,9 @@ static bool take_function(struct glslang_answer *answer, const struct glslang_qu
         snprintf(why, sizeof why,
                  "%s calls %s, which leads back to it: there is no recursion in GLSL", name,
                  called);
+    else if (is_hook(name) && !has_body(preprocessed, name))
+        snprintf(why, sizeof why,
+                 "the preprocessor leaves no function %.16s: an #if or a macro hides it", name);
     else if (is_hook(name))
         snprintf(why, sizeof why,
                  "%.16s has other parameters than whit's own: `whit shader new %.16s` prints it",
@@ -241,6 +256,47 @@ static bool take_function(struct glslang_answer *answer, const struct glslang_qu
     uint32_t own = find_function(question, name, &file, &at) ? 0 : NOBODY;
     messages_add(answer, own, file, at, why);
     return true;
+}
+
+/* Whether a macro is defined in front of the user's text. */
+static bool is_own_macro(const struct glslang_question *question, const char *name)
+{
+    char define[SHADER_REASON_BYTES + 16];
+    size_t length = (size_t)snprintf(define, sizeof define, "\n#define %s", name);
+    for (const char *at = strstr(question->text, define); at; at = strstr(at + 1, define)) {
+        if (!is_name(at[length]))
+            return at < question->text + question->user_at;
+    }
+    return false;
+}
+
+/* Replaces what glslang says where whit knows a better reason. `user`: it is about the user's text.
+ */
+static void explain(const struct glslang_question *question, bool user,
+                    char why[SHADER_REASON_BYTES])
+{
+    char *extension = user ? strstr(why, ": required extension not requested") : NULL;
+    const char *name = strrchr(why, ' ');
+    if (strncmp(why, "'dbg': no matching", 18) == 0 && strstr(question->text, "#define HAS_DBG\n"))
+        snprintf(why, SHADER_REASON_BYTES,
+                 "dbg(x) takes a float, int, uint, bool or a vector of two to four of these");
+    else if (strstr(why, "same parameter storage qualifiers"))
+        snprintf(why, SHADER_REASON_BYTES,
+                 "parameters of whit's functions are `in` or `inout`, as `whit shader new` prints "
+                 "them, and never `const`");
+    else if (strcmp(why, "memory exhausted") == 0) /* bison's words for a full stack */
+        snprintf(why, SHADER_REASON_BYTES, "brackets or blocks that are too deep");
+    else if (extension && strncmp(why, "'string literal'", 16) == 0)
+        snprintf(why, SHADER_REASON_BYTES,
+                 "there are no strings in whit's shaders: dbg(x) shows the value of x");
+    else if (extension)
+        strcpy(extension, " is not there in whit's shaders");
+    else if (strstr(why, "Macro redefined") && is_own_macro(question, name + 1)) {
+        char copy[SHADER_REASON_BYTES];
+        snprintf(copy, sizeof copy, "%s", name + 1);
+        snprintf(why, SHADER_REASON_BYTES, "'%.64s' is a name of whit's: another name is needed",
+                 copy);
+    }
 }
 
 /* Adds an error of the form "NAME:LINE: reason"; without a name it has no file. */
@@ -261,21 +317,13 @@ static void take_error(struct glslang_answer *answer, const struct glslang_quest
         own = NOBODY;
     }
     tidy(line, why);
-    if (strncmp(why, "'dbg': no matching", 18) == 0 && strstr(question->text, "#define HAS_DBG\n"))
-        snprintf(why, sizeof why,
-                 "dbg(x) takes a float, int, uint, bool or a vector of two to four of these");
-    if (strstr(why, "same parameter storage qualifiers"))
-        snprintf(why, sizeof why,
-                 "parameters of whit's functions are `in` or `inout`, as `whit shader new` prints "
-                 "them, and never `const`");
-    if (strcmp(why, "memory exhausted") == 0) /* bison's words for a full stack */
-        snprintf(why, sizeof why, "brackets or blocks that are too deep");
+    explain(question, own == 0, why);
     if (!strstr(why, "compilation terminated") && !strstr(why, "compilation errors.") && why[0])
         messages_add(answer, own, number, at, why);
 }
 
 void messages_take(struct glslang_answer *answer, const struct glslang_question *question,
-                   const char *log)
+                   const char *preprocessed, const char *log)
 {
     char line[LINE_BYTES], next[LINE_BYTES];
     for (const char *at = log; at && *at;) {
@@ -284,7 +332,7 @@ void messages_take(struct glslang_answer *answer, const struct glslang_question 
         at += length + (at[length] == '\n');
         snprintf(next, sizeof next, "%.*s", (int)strcspn(at, "\n"), at);
         const char *error = behind(line, "ERROR: ");
-        if (error && !take_function(answer, question, error, next))
+        if (error && !take_function(answer, question, preprocessed, error, next))
             take_error(answer, question, error);
     }
     if (!answer->error_count)
