@@ -31,12 +31,19 @@ static void complain(const struct line *line, const char *format, ...)
                      line->number, "%s", text);
 }
 
-/* The next word, up to a blank; "" at the end. A word in quotes may have blanks. False: it is
-   longer than `text`. */
-static bool next_word(struct line *line, char *text, size_t text_bytes)
+/* Skips blanks. Whether a word without quotes follows. */
+static bool has_bare_word(struct line *line)
 {
     while (line->at < line->end && isspace((unsigned char)*line->at))
         line->at++;
+    return line->at < line->end && *line->at != '"';
+}
+
+/* The next word, up to a blank; "" at the end. A word in quotes may have blanks. False: it is
+   longer than `text`, or its quotes do not close. */
+static bool next_word(struct line *line, char *text, size_t text_bytes)
+{
+    has_bare_word(line);
     bool quoted = line->at < line->end && *line->at == '"';
     line->at += quoted;
     size_t used = 0;
@@ -48,9 +55,10 @@ static bool next_word(struct line *line, char *text, size_t text_bytes)
         }
         text[used++] = *line->at++;
     }
-    line->at += quoted && line->at < line->end;
     text[used] = 0;
-    return true;
+    bool open = quoted && line->at == line->end;
+    line->at += quoted && !open;
+    return !open;
 }
 
 static bool ends(struct line *line)
@@ -116,21 +124,14 @@ static bool read_slider_color(struct line *line, whit_slider *slider)
 static bool read_slider_toggle(struct line *line, whit_slider *slider)
 {
     char word[SHADER_NAME_BYTES];
-    const char *rest = line->at;
-    bool fits = next_word(line, word, sizeof word);
-    if (fits && (strcmp(word, "on") == 0 || strcmp(word, "off") == 0)) {
-        slider->value[0] = word[1] == 'n';
+    if (!has_bare_word(line))
+        return true; /* no value: it begins switched off */
+    bool fits = next_word(line, word, sizeof word), on = strcmp(word, "on") == 0;
+    slider->value[0] = on;
+    if (fits && (on || strcmp(word, "off") == 0))
         return true;
-    }
-    static const char *const others[] = {"true", "false", "0", "1", "yes", "no"};
-    for (size_t i = 0; fits && i < sizeof others / sizeof *others; ++i) {
-        if (strcmp(word, others[i]) == 0) {
-            complain(line, "a toggle is on or off, not `%s`", word);
-            return false;
-        }
-    }
-    line->at = rest; /* no value: it begins switched off */
-    return true;
+    complain(line, "a toggle is on or off, not `%.60s`", word);
+    return false;
 }
 
 static bool read_slider_choice(struct line *line, whit_slider *slider,
@@ -358,7 +359,7 @@ static void read_slider(struct line *line, size_t kind)
     if (!is_new_name(line, texts->name) || !read_slider_value(line, slider, texts) ||
         !are_new_words(line, slider))
         return;
-    if (!next_word(line, texts->help, sizeof texts->help) || !ends(line)) {
+    if (has_bare_word(line) || !next_word(line, texts->help, sizeof texts->help) || !ends(line)) {
         complain(line,
                  "behind the value of `%s` stands its help in quotes, up to %d bytes, and "
                  "nothing more",
