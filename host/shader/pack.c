@@ -107,7 +107,7 @@ static void put_all(struct writing *w, const struct shader_text *text)
         put(w, file_mark);
         put_escaped(w, file->relative, strlen(file->relative));
         put(w, "\n");
-        put_escaped(w, file->text, file->bytes);
+        put_escaped(w, file->raw, file->bytes);
     }
     snprintf(number, sizeof number, "%016" PRIx64, shader_text_hash(text));
     put(w, "\n");

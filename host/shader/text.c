@@ -467,13 +467,18 @@ static whit_result read_one(struct reading *r, const struct place *place, char *
                                     : read_file(r, whose, &text->files[*index]);
     if (result != WHIT_OK)
         return result;
-    text->files[*index].text[text->files[*index].bytes] = 0;
+    struct shader_file *kept = &text->files[*index];
+    kept->text[kept->bytes] = 0;
+    kept->raw = malloc(kept->bytes + 1);
+    if (!kept->raw)
+        return no_memory(r);
+    memcpy(kept->raw, kept->text, kept->bytes + 1);
     r->below[*index] = 1;
     r->open[r->open_count++] = *index;
-    even_out(&text->files[*index]);
-    result = check_bytes(r, &text->files[*index]);
+    even_out(kept);
+    result = check_bytes(r, kept);
     if (result == WHIT_OK)
-        blank_if_zero(&text->files[*index]);
+        blank_if_zero(kept);
     if (result == WHIT_OK)
         result = check_file(r, *index);
     r->open_count--;
@@ -541,6 +546,7 @@ void shader_text_free(struct shader_text *text)
         free(text->files[i].name);
         free(text->files[i].relative);
         free(text->files[i].text);
+        free(text->files[i].raw);
         free(text->files[i].includes);
     }
     free(text->files);
@@ -601,7 +607,7 @@ uint64_t shader_text_hash(const struct shader_text *text)
     for (uint32_t i = 0; i < text->file_count; ++i) {
         const struct shader_file *file = &text->files[i];
         hash = hash_bytes(hash, file->relative, strlen(file->relative));
-        hash = hash_bytes(hash, file->text, file->bytes);
+        hash = hash_bytes(hash, file->raw, file->bytes);
     }
     return hash;
 }

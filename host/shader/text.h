@@ -25,7 +25,10 @@ struct shader_file {
     char *name; /* for messages: path from where whit was started */
     /* Path from the folder of the first file, without "." and ".."; for files[0] its name. */
     char *relative;
-    char *text; /* ends with a 0 that `bytes` does not count */
+    /* The text that is compiled: without a byte order mark, a CR alone as a line's end, and without
+       what `#if 0` leaves out; it ends with a 0 that `bytes` does not count. `raw`: the file's own
+       bytes, as many. */
+    char *text, *raw;
     size_t bytes;
     struct shader_include *includes; /* in the order of their lines */
     uint32_t include_count, include_capacity;
@@ -74,7 +77,7 @@ void shader_text_end_copy(struct shader_text *copy); /* accepts a zeroed one */
 bool shader_text_defines(const struct shader_text *text, const char *name, uint32_t *file,
                          uint32_t *line);
 
-/* A hash of all files, their names and their order. */
+/* A hash of all files' own bytes, their names and their order. */
 uint64_t shader_text_hash(const struct shader_text *text);
 
 #endif

@@ -19,7 +19,7 @@ static char *packed(void)
     struct shader_file read[2] = {0};
     for (int i = 0; i < 2; ++i)
         read[i] = (struct shader_file){.relative = (char *)(uintptr_t)files[i].relative,
-                                       .text = (char *)(uintptr_t)files[i].text,
+                                       .raw = (char *)(uintptr_t)files[i].text,
                                        .bytes = strlen(files[i].text)};
     const struct shader_text all = {.files = read, .file_count = 2};
     own_memory char *made = shader_pack_write(&all, &why);
@@ -185,7 +185,7 @@ TEST(there_are_limits)
     char name[] = "a.glsl";
     memset(large, 'x', sizeof large - 1);
     assert_false(reads(large));
-    struct shader_file file = {.relative = name, .text = large, .bytes = SHADER_PACK_BYTES};
+    struct shader_file file = {.relative = name, .raw = large, .bytes = SHADER_PACK_BYTES};
     const struct shader_text text = {.files = &file, .file_count = 1};
     assert_null(shader_pack_write(&text, &why));
     assert_non_null(strstr(why, "1 MiB"));

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include "folder_fixture.h"
+#include "shader/pack.h"
 #include "shader/text.h"
 
 static struct shader_text text;
@@ -226,6 +227,22 @@ TEST_IN(what_is_no_text_is_refused_with_its_line, begin, end)
     assert_text_refused("float f();\nstruct S { float x; };\n", 0, "no function");
     put_text("a.glsl", "\xef\xbb\xbf#define X \"\xc3\x84\"\r\n// \xc3\xa4\r\n" FUNCTION);
     assert_int_equal(read_first(), WHIT_OK);
+}
+
+/* What is compiled has neither a byte order mark nor what `#if 0` leaves out, and recipes have
+ * both. */
+TEST_IN(the_files_own_bytes_are_kept, begin, end)
+{
+    static const char own[] = "\xef\xbb\xbf// a\r// b\r\n#if 0\nfloat g();\n#endif\n" FUNCTION;
+    put_text("a.glsl", own);
+    assert_int_equal(read_first(), WHIT_OK);
+    assert_int_equal(text.files[0].bytes, sizeof own - 1);
+    assert_string_equal(text.files[0].raw, own);
+    assert_string_equal(text.files[0].text,
+                        "   // a\n// b\r\n#if 0\n          \n#endif\n" FUNCTION);
+    const char *why;
+    own_memory char *packed = shader_pack_write(&text, &why);
+    assert_non_null(strstr(packed, "\\xef\\xbb\\xbf// a\\x0d// b\\x0d\n#if 0\nfloat g();\n"));
 }
 
 TEST_IN(characters_beyond_ascii_are_refused_with_their_column, begin, end)
