@@ -106,10 +106,10 @@ void fetch_on_triangle(Hit hit, inout Surface s)
 
 // Fills in the surface of a hit sphere. The point is put on the sphere along its normal n, not at
 // the ray's t: p = c + r n. The rounded length of n (three products and sums, whose error the root
-// halves, then root and division: 13 roundings with Vulkan's precision for the last two) and the
-// product put p off by at most gamma(14) r |n|, the sum by one rounding of p. u and v are texture
-// coordinates, and the edges are the derivatives of p by them: rows of texture coordinates of
-// spheres are (0, 0), (1, 0), (0, 1).
+// halves, 9 roundings of the root and 5 of the division at Vulkan's precision: 16) and the product
+// put p off by at most gamma(17) r |n|, the sum by one rounding of p. u and v are texture
+// coordinates, and e1 and e2 the derivatives of p by them; the sphere's record has the coordinates
+// (0, 0), (1, 0), (0, 1), so that interpolation returns u and v themselves.
 void fetch_on_sphere(Hit hit, inout Surface s)
 {
     const float pi = 3.14159265;
@@ -120,7 +120,7 @@ void fetch_on_sphere(Hit hit, inout Surface s)
     n /= sqrt(dot(n, n));
     vec3 arm = n * radius;
     s.p = center + arm;
-    s.error = rounding_bound(14.0) * abs(arm) + rounding_bound(1.0) * abs(s.p);
+    s.error = rounding_bound(17.0) * abs(arm) + rounding_bound(1.0) * abs(s.p);
     s.ng = n;
     s.ns = n;
     float ring = sqrt(n.x * n.x + n.z * n.z);
