@@ -4,7 +4,8 @@
 
 #include "accel/accel.h"
 
-/* The bits that a material sets in the records of its primitives, for traversal. */
+/* Properties of a material: `flags` and `shadow` stand in the records of its primitives, for
+   traversal, and the others decide which flags those get. */
 struct material_bits {
     uint32_t flags, shadow;
     bool masked;    /* SCENE_ALPHA_MASK: vertex colours may cut parts out */

@@ -232,7 +232,8 @@ static whit_result instances_fill(const struct accel *accel, const struct scene_
     return WHIT_OK;
 }
 
-/* Copies the tree to accel->nodes; its leaves then name instances instead of ranks. */
+/* Copies the tree to accel->nodes. Leaves of the copy name instances; those of `tree` name places
+   in its order of instances that are not empty. */
 static void tree_place(struct accel *accel, const struct bvh *tree, const uint32_t *indices)
 {
     memset(accel->nodes + tree->node_count, 0,

@@ -174,7 +174,8 @@ static bool is_first_of_pair(const struct view *view, uint32_t index)
     return local >= 2 && local % 2 == 0;
 }
 
-/* `count` may hold only the number of primitives and, in the first node of a pair, its axis. */
+/* `count` may hold only the number of primitives and, in the first node of a pair, its axis and
+   which node is the lower one. */
 static bool check_count(const struct view *view, uint32_t index)
 {
     uint32_t allowed = BVH_COUNT_MASK;

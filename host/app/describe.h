@@ -12,9 +12,9 @@ int describe_complete(const struct cli_command *const *commands, uint32_t count,
                       const char *const *words);
 /* Prints the options of all commands as a table of Markdown, for docs/cli.md. */
 int describe_table(const struct cli_command *const *commands, uint32_t count);
-/* Writes whit.1 and a page for each command, whit-COMMAND.1, into an existing folder. */
 /* Two lines of help that explain `whit FILE`, a file in place of a command. */
 extern const char *const describe_file;
+/* Writes whit.1 and a page for each command, whit-COMMAND.1, into an existing folder. */
 int describe_manual(const struct cli_command *const *commands, uint32_t count, const char *folder);
 
 #endif

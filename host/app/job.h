@@ -50,7 +50,7 @@ whit_result job_open_device(struct job *job);
 whit_result job_still_wanted(void);
 /* Prints the notes of the scene: warnings, and with `all` also notes on what whit added. */
 void job_print_notes(const struct job *job, bool all);
-/* Zeroed for NULL. */
+/* The information on a shader; zeroed for NULL. */
 whit_shader_info job_shader_info(const whit_shader *shader);
 /* Writes the names of the functions that a shader replaces; gives their number. */
 uint32_t job_functions(const whit_shader_info *shader, const char *names[WHIT_HOOKS]);

@@ -22,7 +22,7 @@ double same_log(double x);
 double same_log2(double x);
 double same_log10(double x);
 double same_exp(double x);
-/* NaN for x < 0. */
+/* NaN for x < 0, unless y is 0. */
 double same_pow(double x, double y);
 
 #endif

@@ -1,4 +1,4 @@
-/* Text of files, as messages quote it. */
+/* Small functions for text of files: places in it, numbers, and how messages quote it. */
 #ifndef BASE_TEXT_H
 #define BASE_TEXT_H
 

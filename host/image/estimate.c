@@ -134,8 +134,7 @@ static void fade(struct estimate *estimate)
 }
 
 /* The changes of a pixel alone may be small by chance, and the mean over its neighbours includes an
-   edge beside it. So the estimate takes a quarter of this mean and three of the pixel's own, as
-   logarithms. */
+   edge beside it. So the estimate is own^(3/4) times mean^(1/4). */
 double estimate_error(struct estimate *estimate, const struct image *cuts, double cut_radiance,
                       struct image *out, double *of_cuts)
 {

@@ -1,4 +1,4 @@
-/* Cameras, and the rays they send: the twin of bind/camera.glsl. */
+/* Cameras, and the rays they send, bit for bit as shaders/bind/camera.glsl computes them. */
 #ifndef PICTURE_CAMERA_H
 #define PICTURE_CAMERA_H
 

@@ -9,7 +9,7 @@ struct ground {
     double height, step, center[2], radius;
 };
 
-/* 1, 2 or 5 times a power of ten, no more than `value`. */
+/* The largest of 1, 2 and 5 times powers of ten that is not above `value`. */
 static double round_down(double value)
 {
     double power = same_pow(10.0, floor(same_log10(value))), digits = value / power;
@@ -33,7 +33,8 @@ static struct ground find_ground(const struct scene_pose *pose)
     };
 }
 
-/* The t at which a ray meets the ground, and the place `at`; below 0: it does not. */
+/* Returns the t at which a ray meets the ground, and the place (x, z) in `at`; a negative result
+   means that it does not. */
 static double meet(const struct ground *ground, const struct gpu_ray *ray, double at[2])
 {
     double t = (ground->height - (double)ray->origin[1]) / (double)ray->dir[1];

@@ -124,8 +124,8 @@ static bool look_around(const struct accel *accel, const float eye[3], int direc
     return true;
 }
 
-/* How often the camera is inside of the body: the median over the directions. It may be anything
-   for an open mesh; below 0 counts as 0. */
+/* How many times the camera is inside the body: the median of the counts along three rays. For an
+   open mesh it may be any number; one below 0 counts as 0. */
 static int32_t times_inside(const struct around *around)
 {
     const int32_t *n = around->left;

@@ -50,7 +50,8 @@ static double number_of(const void *record, const struct scene_field *field, uin
     return *(const bool *)at;
 }
 
-/* Writes the shortest decimal of at least 6 digits that reads back as the same number. */
+/* Writes the number rounded to 6 significant digits, or to as many more as are needed to read back
+   the same number. */
 static void put_number(struct words *words, const char *before, double number, bool is_float)
 {
     char text[32];

@@ -133,8 +133,8 @@ bool wraps(uint way, uint wrap)
     return (ways & bit) != 0u && (ways == bit || wrap == way);
 }
 
-// `at`: a texel of a place from place_in_picture or one beside it: -1 .. 2 size where the texture
-// repeats. Without a division, which devices may round to another whole number.
+// The texel, 0 .. size - 1, that texel `at` stands for by the wrap mode. Where the texture repeats,
+// `at` is in -1 .. 2 size. There is no division, which devices may round to another whole number.
 int wrap_texel(int at, int size, uint wrap)
 {
     int chosen = at;

@@ -50,8 +50,8 @@ bool has_bounds_alone()
     return SPEC_NUMERICS == NUMERICS_EXACT && SPEC_SETTLES == 0u;
 }
 
-// The bounds of a hit, in floats. Vertices are relative to the ray's origin, as in
-// intersect_triangle.
+// Decides by floats and bounds of their errors whether the ray surely misses or surely meets the
+// triangle, and bounds its t. Vertices are relative to the ray's origin.
 ExactBounds exact_filter(RaySetup ray, vec3 a, vec3 b, vec3 c)
 {
     vec3 ta = turn_dominant(ray.dominant, a);
@@ -235,8 +235,8 @@ void carry_digits(ivec2 range, out ivec4 signs, out int sign_a)
     signs = mix(ivec4(notEqual(some, ivec4(0))), ivec4(-1), lessThan(carry, ivec4(0)));
 }
 
-// Negates D, e_b and e_c where D is negative, and N where N is. Returns the numbers of the highest
-// digits of D and of N that are not 0.
+// Negates D, e_b and e_c where D is negative, and N where N is. Returns the indices of the
+// highest digits of D (the determinant) and N (the numerator of t) that are not 0.
 ivec2 make_positive(ivec2 range, ivec4 signs)
 {
     bool flip = signs[WIDE_D] < 0;

@@ -78,7 +78,7 @@ static bool knows_key(const struct golden *golden, const struct golden_case *old
     return false;
 }
 
-/* Writes the parts that changed, are new or are gone; gives their number. */
+/* Writes the parts of a scene that changed, are new or are gone, and returns how many. */
 static uint32_t put_changed_parts(FILE *to, const struct golden *golden,
                                   const struct golden_case *old, const struct golden *found,
                                   const char *shader)
@@ -124,7 +124,7 @@ static bool find_changed(const struct golden *golden, const struct golden_case *
     return true;
 }
 
-/* ---- What is seen ---- */
+/* ---- How pictures differ ---- */
 
 static void put_rays(FILE *to, const struct golden_case *old, const struct golden_case *now)
 {

@@ -42,8 +42,8 @@ static void leave_hook(void)
         unsetenv(names[i]);
 }
 
-/* Starts a program with these as its standard input and output; -1: /dev/null. Gives 0 or an
-   errno. */
+/* Starts the program `words` with `in` as its standard input and `out` as its output; -1:
+   /dev/null. Returns 0 or an errno. */
 static int start(const char *const *words, int in, int out, pid_t *pid)
 {
     posix_spawn_file_actions_t actions;
@@ -74,7 +74,8 @@ static void read_line(int from, char *text, size_t bytes)
     text[strcspn(text, "\n")] = 0;
 }
 
-/* Writes a line to the keeper. If the keeper is gone, there is nobody to tell. */
+/* Sends a number to the shell that removes the worktree in the end. If that is gone, nobody needs
+   to be told. */
 static void tell_keeper(int keeper, long number)
 {
     if (keeper >= 0)

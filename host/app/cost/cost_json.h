@@ -4,7 +4,7 @@
 
 #include "app/cost/cost.h"
 
-/* `cost`: the request; NULL: the report is kept for choices, which need no request. */
+/* Makes the document of a report. `cost`: its request; NULL for a kept report, which has none. */
 json_t *cost_document(const struct cost_report *report, const struct cost *cost);
 /* Reads a file of such a document, for comparisons: without pictures. `scene` gets the name of its
    scene, which the caller frees. False, with a message: it is no such file. */
