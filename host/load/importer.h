@@ -53,7 +53,9 @@ struct import_part {
    too many, or 0; a model with such a face has no parts. `face`: index of that face in its mesh. */
 struct import_counts {
     uint64_t points, lines, bad_faces, face, corners;
-    uint32_t skins, animations, lights, cameras, pictures, color_groups; /* of a GLB */
+    /* of a GLB */
+    uint32_t skins, animations, lights, cameras, pictures, color_groups;
+    uint32_t wraps, uv_sets, parameters, hidden; /* unread_count */
 };
 
 struct import_block {

@@ -427,13 +427,13 @@ static bool write_header(const struct import_counts *counts, size_t glb_bytes, v
     return write(to, &header, sizeof header);
 }
 
-static int write_glb(const struct aiScene *scene, const struct import_request *request,
+/* *scene is NULL where assimp has released it. */
+static int write_glb(const struct aiScene **scene, const struct import_request *request,
                      struct import_counts *counts, void *to, child_write write)
 {
-    if (!scene->mRootNode) /* assimp 5.2.4 reports no error where it cannot read a 3MF's XML */
+    if (!(*scene)->mRootNode) /* assimp 5.2.4 reports no error where it cannot read a 3MF's XML */
         return write_error("the file has no model that it can read", to, write);
-    const struct aiExportDataBlob *blob =
-        importer_glb((struct aiScene *)(uintptr_t)scene, request, counts);
+    const struct aiExportDataBlob *blob = importer_glb(scene, request, counts);
     if (!blob)
         return write_error(aiGetErrorString(), to, write);
     bool ok = write_header(counts, blob->size, to, write) && write(to, blob->data, blob->size);
@@ -454,7 +454,7 @@ int importer_assimp_run(void *user, void *to, child_write write)
     if (has_long_face(scene, &counts))
         code = write_header(&counts, 0, to, write) ? 0 : 1;
     else if (request->kind >= IMPORT_FBX)
-        code = write_glb(scene, request, &counts, to, write);
+        code = write_glb(&scene, request, &counts, to, write);
     else
         code = write_triangles(&scene, request, &counts, to, write);
     if (scene)

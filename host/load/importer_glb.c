@@ -4,6 +4,7 @@
 #include <assimp/cimport.h>
 #include <assimp/material.h>
 #include <assimp/metadata.h>
+#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <math.h>
 #include <string.h>
@@ -12,6 +13,7 @@
 #include "image/image.h"
 #include "load/importer_glb.h"
 #include "load/threemf.h"
+#include "load/unread.h"
 
 /* --- units and axes ------------------------------------------------------------------------- */
 
@@ -120,6 +122,57 @@ static void shorten_paths(struct aiMaterial *material)
     }
 }
 
+static bool meshes_have_set(const struct aiScene *scene, unsigned material, unsigned set)
+{
+    bool all = set < AI_MAX_NUMBER_OF_TEXTURECOORDS;
+    for (unsigned i = 0; all && i < scene->mNumMeshes; i++)
+        all =
+            scene->mMeshes[i]->mMaterialIndex != material || scene->mMeshes[i]->mTextureCoords[set];
+    return all;
+}
+
+/* Replaces sets of texture coordinates that a mesh lacks, or all, by the first. */
+static void check_uv_sets(const struct aiScene *scene, unsigned index, bool trusted)
+{
+    const struct aiMaterial *material = scene->mMaterials[index];
+    for (unsigned i = 0; i < material->mNumProperties; i++) {
+        struct aiMaterialProperty *property = material->mProperties[i];
+        unsigned set = 0;
+        if (strcmp(property->mKey.data, "$tex.uvwsrc") != 0 || property->mDataLength != sizeof set)
+            continue;
+        memcpy(&set, property->mData, sizeof set);
+        if (!trusted || !meshes_have_set(scene, index, set))
+            memset(property->mData, 0, sizeof set);
+    }
+}
+
+/* FBX scales textures about the origin and then moves them; assimp moves them first, and scales
+   them about the middle of the picture. */
+static void restate_moves(struct aiMaterial *material)
+{
+    for (unsigned i = 0; i < material->mNumProperties; i++) {
+        const struct aiMaterialProperty *property = material->mProperties[i];
+        struct aiUVTransform moved;
+        if (strcmp(property->mKey.data, "$tex.uvtrafo") != 0 ||
+            property->mDataLength < sizeof moved)
+            continue;
+        memcpy(&moved, property->mData, sizeof moved);
+        if (moved.mScaling.x == 0 || moved.mScaling.y == 0)
+            continue;
+        moved.mTranslation.x = (moved.mTranslation.x - 0.5f) / moved.mScaling.x + 0.5f;
+        moved.mTranslation.y = (moved.mTranslation.y - 0.5f) / moved.mScaling.y + 0.5f;
+        memcpy(property->mData, &moved, sizeof moved);
+    }
+}
+
+/* Makes the exporter see a whole number, which it looks for as plain bytes. */
+static void show_whole(struct aiMaterial *material, const char *key)
+{
+    for (unsigned i = 0; i < material->mNumProperties; i++)
+        if (strcmp(material->mProperties[i]->mKey.data, key) == 0)
+            material->mProperties[i]->mType = aiPTI_Buffer;
+}
+
 /* --- highlights ----------------------------------------------------------------------------- */
 
 /* Whether the file asks for no highlight. assimp gives a COLLADA material without one a specular
@@ -157,11 +210,13 @@ static void restate_highlight(struct aiMaterial *material, enum import_kind kind
     float *color = find_floats(material, "$clr.specular", 3);
     float *shininess = find_floats(material, "$mat.shininess", 1);
     float *roughness = find_floats(material, "$mat.roughnessFactor", 1);
+    const float *strength = find_floats(material, "$mat.shinpercent", 1); /* FBX: SpecularFactor */
     float exponent = shininess ? fmaxf(*shininess, 0) : 0;
     if (!color || find_floats(material, "$mat.glossinessFactor", 1) ||
         (roughness && fabsf(1 - sqrtf(exponent) / 10 - *roughness) > 1e-4f))
         return;
     float share = is_matt(material, kind, color, exponent) ? 0 : 8 / (exponent + 8);
+    share *= strength ? fmaxf(*strength, 0) : 1;
     float glossiness = 1 - sqrtf(sqrtf(2 / (exponent + 2)));
     for (int i = 0; i < 3; i++)
         color[i] *= share;
@@ -169,6 +224,22 @@ static void restate_highlight(struct aiMaterial *material, enum import_kind kind
         *roughness = 1 - glossiness;
     else if (shininess) /* the exporter's scale of glossiness */
         *shininess = 1000 * glossiness;
+}
+
+/* Makes a `<constant>` of COLLADA unlit: what it emits becomes the base colour. */
+static void restate_constant(struct aiMaterial *material)
+{
+    int model = 0;
+    unsigned one = 1;
+    float *diffuse = find_floats(material, "$clr.diffuse", 4);
+    const float *emission = find_floats(material, "$clr.emissive", 4);
+    aiGetMaterialIntegerArray(material, AI_MATKEY_SHADING_MODEL, &model, &one);
+    if (model != aiShadingMode_NoShading || !diffuse || !emission)
+        return;
+    memcpy(diffuse, emission, 3 * sizeof *diffuse);
+    for (unsigned i = 0; i < material->mNumProperties; i++)
+        if (material->mProperties[i]->mSemantic == aiTextureType_EMISSIVE)
+            material->mProperties[i]->mSemantic = aiTextureType_DIFFUSE;
 }
 
 /* --- the whole ------------------------------------------------------------------------------ */
@@ -216,17 +287,34 @@ static void scale_colors(struct aiMesh *mesh)
         colors[i] /= 255;
 }
 
-const struct aiExportDataBlob *importer_glb(struct aiScene *scene,
+const struct aiExportDataBlob *importer_glb(const struct aiScene **imported,
                                             const struct import_request *request,
                                             struct import_counts *counts)
 {
+    bool trusted = request->kind != IMPORT_DAE || unread_trusts_sets(&request->files[0]);
+    for (unsigned i = 0; i < (*imported)->mNumMaterials; i++) {
+        check_uv_sets(*imported, i, trusted);
+        if (request->kind == IMPORT_FBX)
+            restate_moves((*imported)->mMaterials[i]);
+    }
+    /* The exporter does not write scales and offsets of textures: they go into the coordinates. */
+    *imported = aiApplyPostProcessing(*imported, aiProcess_TransformUVCoords);
+    if (!*imported)
+        return NULL;
+    struct aiScene *scene = (struct aiScene *)(uintptr_t)*imported;
     drop(scene, request->kind, counts);
     for (unsigned i = 0; request->kind == IMPORT_OFF && i < scene->mNumMeshes; i++)
         scale_colors(scene->mMeshes[i]);
     place(scene, request, counts);
+    unread_count(request, counts);
     for (unsigned i = 0; i < scene->mNumMaterials; i++) {
         shorten_paths(scene->mMaterials[i]);
+        show_whole(scene->mMaterials[i], "$tex.uvwsrc");
         restate_highlight(scene->mMaterials[i], request->kind);
+        if (request->kind == IMPORT_DAE) {
+            restate_constant(scene->mMaterials[i]);
+            show_whole(scene->mMaterials[i], "$mat.shadingm");
+        }
         if (request->kind == IMPORT_3MF)
             decode_color(scene->mMaterials[i]);
     }

@@ -8,9 +8,9 @@ struct aiScene;
 struct aiExportDataBlob;
 
 /* Exports a GLB in metres with y upwards, without skins, animations, lights and cameras, which it
-   counts in *counts. Changes `scene`; the caller releases the blob. NULL: aiGetErrorString() says
-   why. */
-const struct aiExportDataBlob *importer_glb(struct aiScene *scene,
+   counts in *counts. Changes *scene, which is NULL behind it where assimp has released it; the
+   caller releases the blob. NULL: aiGetErrorString() says why. */
+const struct aiExportDataBlob *importer_glb(const struct aiScene **scene,
                                             const struct import_request *request,
                                             struct import_counts *counts);
 

@@ -167,7 +167,15 @@ static void note_dropped(struct scene *scene, const char *path, const struct imp
                   {"light is not read", "lights are not read", counts->lights},
                   {"camera is not read", "cameras are not read", counts->cameras},
                   {"picture is not read", "pictures are not read", counts->pictures},
-                  {"colour group is not read", "colour groups are not read", counts->color_groups}};
+                  {"colour group is not read", "colour groups are not read", counts->color_groups},
+                  {"wrap mode is not read, its texture repeats",
+                   "wrap modes are not read, their textures repeat", counts->wraps},
+                  {"binding is not read, its texture has the first set of coordinates",
+                   "bindings are not read, their textures have the first set of coordinates",
+                   counts->uv_sets},
+                  {"parameter of an effect is not read", "parameters of effects are not read",
+                   counts->parameters},
+                  {"hidden node is drawn", "hidden nodes are drawn", counts->hidden}};
     for (size_t i = 0; i < sizeof unread / sizeof *unread; i++)
         if (unread[i].count)
             scene_note(scene, SCENE_NOTE_WARNING, "%s: %u %s", name, unread[i].count,
@@ -175,10 +183,17 @@ static void note_dropped(struct scene *scene, const char *path, const struct imp
 }
 
 static whit_result add_whole(struct scene *scene, const struct model_request *request,
-                             const struct import_block *block)
+                             enum import_kind kind, const struct import_block *block)
 {
+    uint32_t first = scene->material_count;
     note_dropped(scene, request->path, &block->counts);
-    return gltf_load_bytes(scene, request, block->glb, block->glb_bytes);
+    whit_result result = gltf_load_bytes(scene, request, block->glb, block->glb_bytes);
+    for (uint32_t i = first; kind == IMPORT_FBX && i < scene->material_count;
+         i++) { /* assimp does not pass on the culling of an FBX */
+        scene->materials[i].one_sided = false;
+        scene->materials[i].two_sided = true;
+    }
+    return result;
 }
 
 /* --- all kinds ------------------------------------------------------------------------------ */
@@ -232,7 +247,7 @@ static whit_result load_imported(struct scene *scene, const struct model_request
         result = import(scene, request, &file, &block);
     free(file.data);
     if (result == WHIT_OK && kind >= IMPORT_FBX)
-        result = add_whole(scene, request, &block);
+        result = add_whole(scene, request, kind, &block);
     else if (result == WHIT_OK)
         result = add_block(scene, request, &block, &file.library, kind != IMPORT_OBJ);
     importer_finish(&block);

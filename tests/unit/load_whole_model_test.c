@@ -2,6 +2,7 @@
    the things that are not. */
 #include "../random.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "load_model_fixture.h"
 #include "unit.h"
 
@@ -40,6 +41,20 @@ static void assert_place(const struct scene *scene, uint32_t instance, uint32_t 
 static const struct scene_material *material_of(const struct scene *scene)
 {
     return &scene->materials[scene->meshes[scene->instances[0].mesh].materials[0]];
+}
+
+/* Writes a copy of a file of text in which `to` stands for the first `from`. */
+static const char *put_edited(const char *path, const char *from, const char *to)
+{
+    own_memory uint8_t *text = NULL;
+    size_t bytes;
+    assert_int_equal(file_read(&fixture.log, NULL, path, 0, &text, &bytes), WHIT_OK);
+    const char *at = strstr((const char *)text, from);
+    assert_non_null(at);
+    own_memory char *edited = string_format("%.*s%s%s", (int)(at - (const char *)text),
+                                            (char *)text, to, at + strlen(from));
+    assert_non_null(edited);
+    return put_text(path_name(path), edited);
 }
 
 /* --- OFF ------------------------------------------------------------------------------------ */
@@ -219,6 +234,48 @@ TEST_IN(collada_with_three_texture_coordinates, fixture_begin, fixture_end)
     assert_float_equal(scene->meshes[0].uvs[0][3], 1.0, 1e-6);
 }
 
+/* Lit by nothing, and no light itself. */
+TEST_IN(collada_constant_is_unlit, fixture_begin, fixture_end)
+{
+    const char *path = put_edited(write_collada("e", "", ""), "<lambert>", "<constant>");
+    const struct scene_material *flat =
+        material_of(load(put_edited(put_edited(path, "</lambert>", "</constant>"),
+                                    "<diffuse><texture texture='t' texcoord='U'/></diffuse>", "")));
+    assert_int_equal(flat->model, WHIT_MODEL_UNLIT);
+    assert_float_equal(flat->diffuse[0], 0.5, 1e-6);
+    assert_float_equal(flat->diffuse[2], 0, 1e-6);
+    assert_float_equal(flat->emission[0], 0, 0);
+}
+
+/* Draws with the second set if the name of the binding, by which assimp goes, states it. */
+TEST_IN(collada_binds_its_textures_to_sets, fixture_begin, fixture_end)
+{
+    static const char *const names[] = {"CH1", "U"};
+    for (uint32_t i = 0; i < 2; i++) {
+        own_memory char *texture = string_format("texcoord='%s'", names[i]);
+        own_memory char *bound = string_format("target='#m'><bind_vertex_input semantic='%s' "
+                                               "input_semantic='TEXCOORD' input_set='1'/>"
+                                               "</instance_material>",
+                                               names[i]);
+        const char *path = put_edited(write_collada("e", "", ""), "texcoord='U'", texture);
+        path = put_edited(path, "target='#m'/>", bound);
+        path = put_edited(path, "set='0'/>",
+                          "set='0'/><input semantic='TEXCOORD' source='#u' offset='0' set='1'/>");
+        const struct scene *scene = load(path);
+        assert_int_equal(scene->materials[i].textures[SCENE_SLOT_DIFFUSE].uv_set, 1 - i);
+        assert_int_equal(fixture_noted("a.dae: 1 binding is not read"), i);
+    }
+}
+
+TEST_IN(what_collada_loses_is_named, fixture_begin, fixture_end)
+{
+    const char *path = put_edited(write_collada("e", "", ""), "<source>s</source>",
+                                  "<source>s</source><wrap_s>WRAP</wrap_s><wrap_t>CLAMP</wrap_t>");
+    load(put_edited(path, "<color>0.5 0.25 0 1</color>", "<param ref='s'/>"));
+    assert_true(fixture_noted("a.dae: 1 wrap mode is not read"));
+    assert_true(fixture_noted("a.dae: 1 parameter of an effect is not read"));
+}
+
 /* assimp would make a mesh of the nodes. */
 TEST_IN(collada_without_meshes_draws_nothing, fixture_begin, fixture_end)
 {
@@ -365,6 +422,46 @@ TEST_IN(fbx_in_two_centimetres_and_z_up, fixture_begin, fixture_end)
         assert_false(fixture_noted("no such file")); /* it is beside the model */
         assert_false(fixture_noted("outside"));
     }
+}
+
+#define UV_LAYER                                                                                   \
+    "\t\tLayerElementUV: 0 {\n\t\t\tVersion: 101\n\t\t\tName: \"u\"\n"                             \
+    "\t\t\tMappingInformationType: \"ByPolygonVertex\"\n"                                          \
+    "\t\t\tReferenceInformationType: \"Direct\"\n\t\t\tUV: *6 {\n\t\t\t\ta: "                      \
+    "0,0,1,0,0,1\n\t\t\t}\n"                                                                       \
+    "\t\t}\n\t\tLayer: 0 {\n\t\t\tLayerElement:  {\n\t\t\t\tType: \"LayerElementUV\"\n"            \
+    "\t\t\t\tTypedIndex: 0\n\t\t\t}\n"
+
+/* Scaled about the origin, then moved; v grows downwards here. */
+TEST_IN(fbx_moves_its_textures, fixture_begin, fixture_end)
+{
+    const char *path = put_edited(write_fbx(3), "\t\tLayer: 0 {\n", UV_LAYER);
+    path = put_edited(
+        path, "\t\tMedia: \"\"\n",
+        "\t\tProperties70:  {\n\t\t\tP: \"Translation\", \"Vector\", \"\", \"A\",0.25,0.125,0\n"
+        "\t\t\tP: \"Scaling\", \"Vector\", \"\", \"A\",3,2,1\n"
+        "\t\t\tP: \"WrapModeU\", \"enum\", \"\", \"\",1\n"
+        "\t\t\tP: \"WrapModeV\", \"enum\", \"\", \"\",0\n\t\t}\n");
+    const struct scene *scene = load(path);
+    const float wanted[6] = {0.25f, 0.875f, 3.25f, 0.875f, 0.25f, -1.125f};
+    for (int i = 0; i < 6; i++)
+        assert_float_equal(scene->meshes[0].uvs[0][i], wanted[i], 1e-6);
+    assert_true(fixture_noted("a.fbx: 1 wrap mode is not read, its texture repeats"));
+}
+
+TEST_IN(fbx_has_two_sides_and_weighs_highlights, fixture_begin, fixture_end)
+{
+    const char *path = put_edited(write_fbx(3), "\"lambert\"", "\"phong\"");
+    path = put_edited(path, "0.25,0.5,0.75\n",
+                      "0.25,0.5,0.75\n\t\t\tP: \"SpecularColor\", \"Color\", \"\", \"A\",1,1,1\n"
+                      "\t\t\tP: \"SpecularFactor\", \"Number\", \"\", \"A\",0.25\n"
+                      "\t\t\tP: \"ShininessExponent\", \"Number\", \"\", \"A\",32\n");
+    path = put_edited(path, "0,0,25\n",
+                      "0,0,25\n\t\t\tP: \"Visibility\", \"Visibility\", \"\", \"A\",0\n");
+    const struct scene_material *material = material_of(load(path));
+    assert_false(material->one_sided);
+    assert_float_equal(material->specular[0] * 0.04f, 0.25 * 8 / 40, 1e-6);
+    assert_true(fixture_noted("a.fbx: 1 hidden node is drawn"));
 }
 
 /* --- 3MF ------------------------------------------------------------------------------------ */

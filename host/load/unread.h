@@ -1,0 +1,18 @@
+/* What a COLLADA or FBX file states and assimp 5.2 leaves out without a word. */
+#ifndef LOAD_UNREAD_H
+#define LOAD_UNREAD_H
+
+#include "load/importer.h"
+
+/* Searches the model's bytes, and sets of *counts:
+   wraps: wrap modes of textures other than repetition;
+   uv_sets: bindings of textures to other texture coordinates than the first;
+   parameters: values of effects that name a parameter;
+   hidden: models that are not visible.
+   Values are not searched for in other formats. */
+void unread_count(const struct import_request *request, struct import_counts *counts);
+
+/* Whether the sets of texture coordinates that assimp gives for a COLLADA are those of the file. */
+bool unread_trusts_sets(const struct import_file *file);
+
+#endif
