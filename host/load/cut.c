@@ -85,8 +85,9 @@ static char *clean_off(const char *text, size_t size_bytes)
 }
 
 /* Reads the corners of the face in the line at `at`, of which *count is the number; gives what
-   follows them, or NULL if they are not in this line. */
-static const char *skip_corners(const char *at, long long *count)
+   follows them, or NULL if they are not in this line. *bad: one is none of the vertices. */
+static const char *skip_corners(const char *at, unsigned long long vertex_count, long long *count,
+                                bool *bad)
 {
     char *end;
     *count = strtoll(at, &end, 10);
@@ -96,6 +97,7 @@ static const char *skip_corners(const char *at, long long *count)
         at += strspn(at, " \t");
         size_t length = strcspn(at, " \t\n");
         whole = length > 0;
+        *bad |= *at == '-' || strtoull(at, NULL, 10) >= vertex_count;
         at += length;
     }
     return whole && *count >= 0 ? at + strspn(at, " \t") : NULL;
@@ -117,10 +119,12 @@ static whit_result check_off(struct scene *scene, const char *path, const char *
         for (unsigned long long i = 0; i < counts[what]; i++) {
             long long corners = 0;
             at = next_line(at);
-            const char *end = what == 1 ? skip_corners(at, &corners) : at;
-            if (!*at || !end) {
-                log_error(&scene->log, "%s: %s %llu of %llu is cut short or missing", path,
-                          names[what], i + 1, counts[what]);
+            bool bad = false;
+            const char *end = what == 1 ? skip_corners(at, counts[0], &corners, &bad) : at;
+            if (!*at || !end || bad) {
+                log_error(&scene->log, "%s: %s %llu of %llu %s", path, names[what], i + 1,
+                          counts[what],
+                          bad ? "names a vertex that is not there" : "is cut short or missing");
                 return WHIT_ERROR_INPUT;
             }
             wide += corners > OFF_CORNERS_MAX;

@@ -10,10 +10,11 @@
    before and after. */
 WHIT_CHECK whit_result cut_check_stl(struct scene *scene, const char *path, uint8_t *data,
                                      size_t *size_bytes);
-/* Logs an error if an OFF has fewer vertices or faces, each in a line of its own, than it says:
-   assimp 5.2 would crash. Notes faces that assimp drops, and their colours. Removes comments, which
-   assimp takes for vertices or faces, and writes the keyword if it is left out. What is no OFF is
-   left to assimp. Replaces *data (malloc'ed, zero-terminated). */
+/* Logs an error if an OFF has fewer vertices or faces, each in a line of its own, than it says,
+   or a face an index out of range: assimp 5.2 would crash, or take another vertex. Notes faces that
+   assimp drops, and their colours. Removes comments, which assimp takes for vertices or faces, and
+   writes the keyword if it is left out. What is no OFF is left to assimp. Replaces *data
+   (malloc'ed, zero-terminated). */
 WHIT_CHECK whit_result cut_check_off(struct scene *scene, const char *path, uint8_t **data,
                                      size_t *size_bytes);
 

@@ -1,5 +1,6 @@
 #include "load/gltf.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,7 @@
 #include "load/model.h"
 #include "load/model_mesh.h"
 #include "load/obj.h"
+#include "load/picture.h"
 #include "load/ply.h"
 #include "load/ply_elements.h"
 
@@ -38,6 +40,7 @@ struct model_file {
     size_t size_bytes;
     struct mtl_library library; /* that an OBJ names */
     bool has_smooth_groups;
+    struct ply_paint paint; /* of a PLY; of an OBJ: no texture, and colours as assimp has them */
 };
 
 static whit_result import(struct scene *scene, const struct model_request *request,
@@ -82,6 +85,7 @@ static whit_result add_instance(struct scene *scene, const char *name, uint32_t 
 /* The materials of one model. Each is added to the scene when the first part uses it. */
 struct palette {
     const struct mtl_library *library;
+    const char *texture;      /* file name of the picture on all parts, or NULL */
     struct key_table indices; /* scene's material index by name */
 };
 
@@ -100,7 +104,17 @@ static whit_result make_material(struct scene *scene, const struct model_request
     if (entry)
         return mtl_material(scene, entry, request->params, out);
     bool named = part->material[0] && strcmp(part->material, "DefaultMaterial") != 0;
-    make_default(named ? part->material : "default", part->colors, out);
+    bool textured = palette->texture && part->uvs[0];
+    make_default(named ? part->material : "default", part->colors || textured, out);
+    if (textured) {
+        char *path = picture_find_named(&scene->roots, request->path, palette->texture);
+        whit_result result = path ? load_texture(scene, path, NULL, 0, request->params,
+                                                 &out->textures[SCENE_SLOT_DIFFUSE].texture, NULL)
+                                  : WHIT_ERROR_MEMORY;
+        free(path);
+        if (result != WHIT_OK)
+            return result;
+    }
     if (named && palette->library->count)
         scene_note(scene, SCENE_NOTE_WARNING, "%s: material `%s` is not defined, it is drawn grey",
                    path_name(request->path), text_token(part->material).text);
@@ -128,12 +142,45 @@ static whit_result find_material(struct scene *scene, const struct model_request
 
 /* --- OBJ, PLY, STL -------------------------------------------------------------------------- */
 
+/* Multiplies a channel of all vertex colours and adds to it; gives the largest result. */
+static float paint_channel(const struct import_block *block, size_t channel, float scale,
+                           float offset, bool write)
+{
+    float largest = 0;
+    for (uint32_t i = 0; i < block->part_count; i++) {
+        float *colors = (float *)(uintptr_t)block->parts[i].colors;
+        size_t end = colors ? (size_t)block->parts[i].vertex_count * 4 : 0;
+        for (size_t k = channel; k < end; k += 4) {
+            float value = fmaxf(colors[k] * scale + offset, 0);
+            largest = fmaxf(largest, value);
+            if (write)
+                colors[k] = value;
+        }
+    }
+    return largest;
+}
+
+/* Turns assimp's vertex colours back into the file's numbers. These are bytes if one is 2 or
+   larger, or words if one is larger than 255: the formats do not state the range of all types. */
+static void paint_colors(const struct import_block *block, const struct ply_paint *paint)
+{
+    for (size_t alpha = 0; alpha < 2; alpha++) {
+        size_t first = alpha * 3, end = first + (alpha ? 1 : 3);
+        float scale = paint->scale[alpha], offset = paint->offset[alpha], largest = 0;
+        for (size_t c = first; c < end; c++)
+            largest = fmaxf(largest, paint_channel(block, c, scale, offset, false));
+        float divisor = largest < 2 ? 1.0f : largest > 255 ? 65535.0f : 255.0f;
+        for (size_t c = first; c < end && (scale != divisor || offset != 0); c++)
+            paint_channel(block, c, scale / divisor, offset / divisor, true);
+    }
+}
+
 /* Adds the whole block as one mesh with one instance, so that the file has a single tree. */
 static whit_result add_block(struct scene *scene, const struct model_request *request,
-                             const struct import_block *block, const struct mtl_library *library,
-                             bool colors_are_srgb)
+                             const struct import_block *block, const struct model_file *file)
 {
-    struct palette palette = {.library = library};
+    paint_colors(block, &file->paint);
+    struct palette palette = {.library = &file->library, .texture = file->paint.texture};
     struct model_part *parts = array_alloc_zeroed(block->part_count, sizeof *parts);
     whit_result result = parts ? WHIT_OK : WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; result == WHIT_OK && i < block->part_count; i++) {
@@ -144,7 +191,8 @@ static whit_result add_block(struct scene *scene, const struct model_request *re
     uint32_t mesh = SCENE_NONE;
     const char *name = path_name(request->path);
     if (result == WHIT_OK)
-        result = model_add_mesh(scene, name, parts, block->part_count, colors_are_srgb, &mesh);
+        result =
+            model_add_mesh(scene, name, parts, block->part_count, file->kind != IMPORT_OBJ, &mesh);
     if (result == WHIT_OK)
         result = add_instance(scene, name, mesh, request->parent);
     key_table_finish(&palette.indices);
@@ -216,7 +264,7 @@ static whit_result prepare_ply(struct scene *scene, const char *path, struct mod
     if (result == WHIT_OK)
         result = ply_replace_strips(&scene->log, path, &file->data, &file->size_bytes);
     if (result == WHIT_OK)
-        result = ply_check_elements(&scene->log, path, file->data, &file->size_bytes);
+        result = ply_check_elements(scene, path, &file->data, &file->size_bytes, &file->paint);
     bool repaired = result != WHIT_OK || ply_repair(&file->data, &file->size_bytes);
     return repaired ? result : WHIT_ERROR_MEMORY;
 }
@@ -240,7 +288,8 @@ static whit_result prepare(struct scene *scene, const char *path, struct model_f
 static whit_result load_imported(struct scene *scene, const struct model_request *request,
                                  enum import_kind kind, uint8_t *data, size_t size_bytes)
 {
-    struct model_file file = {.kind = kind, .data = data, .size_bytes = size_bytes};
+    struct model_file file = {
+        .kind = kind, .data = data, .size_bytes = size_bytes, .paint.scale = {1, 1}};
     struct import_block block = {0};
     whit_result result = prepare(scene, request->path, &file);
     if (result == WHIT_OK)
@@ -249,9 +298,10 @@ static whit_result load_imported(struct scene *scene, const struct model_request
     if (result == WHIT_OK && kind >= IMPORT_FBX)
         result = add_whole(scene, request, kind, &block);
     else if (result == WHIT_OK)
-        result = add_block(scene, request, &block, &file.library, kind != IMPORT_OBJ);
+        result = add_block(scene, request, &block, &file);
     importer_finish(&block);
     mtl_finish(&file.library);
+    free(file.paint.texture);
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/file.h"
 #include "base/text.h"
 
 /* --- the header ----------------------------------------------------------------------------- */
@@ -14,11 +15,13 @@ enum { WORDS_MAX = 5, WORD_BYTES = 32 };
 /* A scalar type in binary files; 0 bytes: not a type of PLY. */
 struct type {
     uint32_t bytes;
-    bool is_signed;
+    bool is_signed, is_float;
 };
 
 struct property {
     bool list, is_corners; /* is_corners: the vertices of a face */
+    bool is_red, is_alpha;
+    uint32_t line;
     struct type count, value;
 };
 
@@ -26,7 +29,8 @@ struct element {
     char name[WORD_BYTES];
     unsigned long long count;
     size_t begin, end; /* offsets of its lines in the header */
-    size_t data_end;   /* offset behind its data; filled by check_elements */
+    size_t data_end;   /* offset behind its data; filled by check_elements, as is empty_count */
+    unsigned long long empty_count; /* faces without corners */
     uint32_t line, first_property, property_count;
 };
 
@@ -62,8 +66,8 @@ static struct type type_of(const char *name)
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         for (int k = 0; k < 2; k++)
             if (strcmp(types[i].names[k], name + is_unsigned) == 0)
-                return (struct type){types[i].bytes, !is_unsigned};
-    return (struct type){0, false};
+                return (struct type){types[i].bytes, !is_unsigned, i >= 3};
+    return (struct type){0};
 }
 
 /* Splits the line at `at` into its first words, of which longer ones are cut; gives the offset of
@@ -88,8 +92,12 @@ static size_t read_line(const uint8_t *data, size_t size_bytes, size_t at,
 static bool add_property(struct header *header, char words[WORDS_MAX][WORD_BYTES])
 {
     bool list = strcmp(words[1], "list") == 0;
+    const char *red = strncmp(words[2], "diffuse_", 8) == 0 ? words[2] + 8 : words[2];
     const struct property property = {.list = list,
                                       .is_corners = strncmp(words[4], "vertex_ind", 10) == 0,
+                                      .is_red = strcmp(red, "red") == 0,
+                                      .is_alpha = strcmp(words[2], "alpha") == 0,
+                                      .line = header->line_count,
                                       .count = type_of(words[2]),
                                       .value = type_of(words[list ? 3 : 1])};
     header->elements[header->element_count - 1].property_count++;
@@ -387,30 +395,31 @@ static void next_line(struct cursor *line, const uint8_t *end)
         line->end++;
 }
 
-/* Skips an instance of an element; gives why it cannot be read, or NULL. */
-static const char *skip_instance(struct cursor *from, const struct header *header,
-                                 const struct element *element)
+/* Skips an instance of an element; *empty: it is a face without corners. False: it is cut short. */
+static bool skip_instance(struct cursor *from, const struct header *header,
+                          const struct element *element, bool *empty)
 {
+    *empty = false;
     for (uint32_t k = 0; k < element->property_count; k++) {
         const struct property *property = &header->properties[element->first_property + k];
         struct cursor count_at = *from;
         int64_t count = 1;
         if (!skip_property(from, property))
-            return "is cut short, missing or not of numbers";
-        if (property->is_corners && read_whole(&count_at, property->count, &count) && count == 0)
-            return "has no corners";
+            return false;
+        *empty |= property->is_corners && read_whole(&count_at, property->count, &count) && !count;
     }
-    return NULL;
+    return true;
 }
 
-static bool has_known_types(const struct header *header)
+/* The line of the first property whose type is none of PLY; 0: there is none. */
+static uint32_t find_bad_type(const struct header *header)
 {
     for (uint32_t i = 0; i < header->property_count; i++) {
         const struct property *property = &header->properties[i];
         if (property->value.bytes == 0 || (property->list && property->count.bytes == 0))
-            return false;
+            return property->line;
     }
-    return true;
+    return 0;
 }
 
 static whit_result check_elements(const whit_log *log, const char *path, const uint8_t *data,
@@ -421,16 +430,17 @@ static whit_result check_elements(const whit_log *log, const char *path, const u
     struct cursor from = {data + header->end, lines ? data + header->end : end, header->format};
     for (uint32_t i = 0; i < header->element_count; i++) {
         struct element *element = &header->elements[i];
-        const char *why_not = NULL;
+        bool good = true, empty;
         unsigned long long done = 0;
-        for (; element->property_count && done < element->count && !why_not; done++) {
+        for (; element->property_count && done < element->count && good; done++) {
             if (lines)
                 next_line(&from, end);
-            why_not = skip_instance(&from, header, element);
+            good = skip_instance(&from, header, element, &empty);
+            element->empty_count += empty;
         }
-        if (why_not) {
-            log_error(log, "%s: %s %llu of %llu %s", path, text_token(element->name).text, done,
-                      element->count, why_not);
+        if (!good) {
+            log_error(log, "%s: %s %llu of %llu is cut short, missing or not of numbers", path,
+                      text_token(element->name).text, done, element->count);
             return WHIT_ERROR_INPUT;
         }
         while (lines && from.end < end && *from.end <= ' ')
@@ -442,56 +452,172 @@ static whit_result check_elements(const whit_log *log, const char *path, const u
 
 /* --- what assimp reads ---------------------------------------------------------------------- */
 
-static bool is_read(const char *name)
+/* The file that assimp gets, no longer than the one that there is. */
+struct output {
+    uint8_t *bytes;
+    size_t used;
+};
+
+static void put(struct output *to, const uint8_t *from, size_t count)
 {
-    return strcmp(name, "vertex") == 0 || strcmp(name, "face") == 0;
+    memcpy(to->bytes + to->used, from, count);
+    to->used += count;
 }
 
-static void move_down(uint8_t *data, size_t *to, size_t begin, size_t end)
-{
-    memmove(data + *to, data + begin, end - begin);
-    *to += end - begin;
-}
-
-/* Removes all elements but vertices and faces, and the header's comments; gives the new size. */
-static size_t keep_read(uint8_t *data, const struct header *header)
+/* Copies lines of the header without comments, of which it keeps the name of the texture. False:
+   memory ran out. */
+static bool put_lines(struct output *to, const uint8_t *data, size_t begin, size_t end,
+                      struct ply_paint *paint)
 {
     char words[WORDS_MAX][WORD_BYTES];
-    bool kept = true;
-    size_t to = 0;
-    for (size_t at = 0, next; at < header->end; at = next) {
-        next = read_line(data, header->end, at, words);
-        if (strcmp(words[0], "element") == 0)
-            kept = is_read(words[1]);
-        bool comment = strcmp(words[0], "comment") == 0 || strcmp(words[0], "obj_info") == 0;
-        if (next == header->end || (kept && !comment))
-            move_down(data, &to, at, next);
+    for (size_t at = begin, next; at < end; at = next) {
+        next = read_line(data, end, at, words);
+        bool names = strcmp(words[0], "comment") == 0 && strcmp(words[1], "TextureFile") == 0;
+        paint->more_textures |= names && paint->texture;
+        if (names && !paint->texture) {
+            const char *name = strstr((const char *)data + at, words[1]) + strlen(words[1]);
+            name += strspn(name, " \t");
+            paint->texture = string_format("%.*s", (int)strcspn(name, "\r\n"), name);
+            if (!paint->texture)
+                return false;
+        }
+        if (strcmp(words[0], "comment") == 0 || strcmp(words[0], "obj_info") == 0)
+            continue;
+        size_t named = strcspn((const char *)data + at, "_");
+        if (strncmp(words[2], "diffuse_", 8) == 0) {
+            put(to, data + at, named - strlen("diffuse"));
+            put(to, data + at + named + 1, next - at - named - 1);
+        } else
+            put(to, data + at, next - at);
     }
-    size_t begin = header->end;
-    for (uint32_t i = 0; i < header->element_count; i++) {
-        const struct element *element = &header->elements[i];
-        if (is_read(element->name))
-            move_down(data, &to, begin, element->data_end);
-        begin = element->data_end;
-    }
-    data[to] = 0;
-    return to;
+    return true;
 }
 
-whit_result ply_check_elements(const whit_log *log, const char *path, uint8_t *data,
-                               size_t *size_bytes)
+/* Copies an element's data from `begin` on, without faces that have no corners. */
+static void put_data(struct output *to, const uint8_t *data, size_t begin,
+                     const struct header *header, const struct element *element)
+{
+    const uint8_t *end = data + element->data_end;
+    bool lines = header->format == FORMAT_ASCII, empty;
+    struct cursor from = {data + begin, lines ? data + begin : end, header->format};
+    if (!element->empty_count)
+        put(to, data + begin, element->data_end - begin);
+    for (unsigned long long i = 0; element->empty_count && i < element->count; i++) {
+        if (lines)
+            next_line(&from, end);
+        const uint8_t *start = from.at;
+        (void)skip_instance(&from, header, element, &empty);
+        if (!empty)
+            put(to, start, (size_t)((lines ? from.end + (from.end < end) : from.at) - start));
+    }
+}
+
+static bool put_element(struct output *to, const uint8_t *data, const struct element *element,
+                        struct ply_paint *paint)
+{
+    char words[WORDS_MAX][WORD_BYTES];
+    size_t begin = element->begin;
+    if (element->empty_count) {
+        begin += strcspn((const char *)data + begin, "\r\n");
+        to->used += (size_t)sprintf((char *)to->bytes + to->used, "element face %llu",
+                                    element->count - element->empty_count);
+        size_t next = read_line(data, element->end, begin, words);
+        put(to, data + begin, next - begin);
+        begin = next;
+    }
+    return put_lines(to, data, begin, element->end, paint);
+}
+
+/* Copies what assimp reads, vertices first. False: memory ran out. */
+static bool keep_read(struct output *to, const uint8_t *data, const struct header *header,
+                      struct ply_paint *paint)
+{
+    static const char *const names[] = {"vertex", "face"};
+    const struct element *elements = header->elements;
+    uint32_t count = header->element_count;
+    bool good = put_lines(to, data, 0, count ? elements[0].begin : 0, paint);
+    for (uint32_t i = 0; good && i < 2 * count; i++)
+        if (strcmp(elements[i % count].name, names[i / count]) == 0)
+            good = put_element(to, data, &elements[i % count], paint);
+    if (good)
+        good = put_lines(to, data, count ? elements[count - 1].end : 0, header->end, paint);
+    for (uint32_t i = 0; good && i < 2 * count; i++)
+        if (strcmp(elements[i % count].name, names[i / count]) == 0)
+            put_data(to, data, i % count ? elements[i % count - 1].data_end : header->end, header,
+                     &elements[i % count]);
+    to->bytes[to->used] = 0;
+    return good;
+}
+
+/* --- colours -------------------------------------------------------------------------------- */
+
+/* assimp divides by 255 or 65535, after an addition for types with a sign. */
+static void read_paint(const struct header *header, const struct element *vertices,
+                       struct ply_paint *paint)
+{
+    for (uint32_t k = 0; vertices && k < vertices->property_count; k++) {
+        const struct property *property = &header->properties[vertices->first_property + k];
+        struct type type = property->value;
+        bool is_int = type.bytes == 4 && type.is_signed, is_byte = type.bytes == 1;
+        if ((!property->is_red && !property->is_alpha) || type.is_float ||
+            (is_byte && !type.is_signed))
+            continue;
+        paint->scale[property->is_alpha] = is_int || is_byte ? 255.0f : 65535.0f;
+        paint->offset[property->is_alpha] = is_int            ? -127.5f
+                                            : !type.is_signed ? 0.0f
+                                            : is_byte         ? -127.0f
+                                                              : -32767.0f;
+    }
+}
+
+static void note_unread(struct scene *scene, const char *path, const struct header *header,
+                        const struct ply_paint *paint)
+{
+    const struct element *faces = find_element(header, "face");
+    const char *name = path_name(path);
+    bool coloured = false;
+    for (uint32_t k = 0; faces && k < faces->property_count; k++)
+        coloured |= header->properties[faces->first_property + k].is_red;
+    if (coloured)
+        scene_note(scene, SCENE_NOTE_WARNING, "%s: colours of %llu faces are not read", name,
+                   faces->count);
+    if (faces && faces->empty_count)
+        scene_note(scene, SCENE_NOTE_WARNING, "%s: %llu faces without corners were dropped", name,
+                   faces->empty_count);
+    if (find_element(header, "material"))
+        scene_note(scene, SCENE_NOTE_WARNING, "%s: its materials are not read", name);
+    if (paint->more_textures)
+        scene_note(scene, SCENE_NOTE_WARNING, "%s: of its textures only the first is drawn", name);
+}
+
+whit_result ply_check_elements(struct scene *scene, const char *path, uint8_t **data,
+                               size_t *size_bytes, struct ply_paint *paint)
 {
     struct header header = {0};
-    whit_result result = read_header(data, *size_bytes, &header) ? WHIT_OK : WHIT_ERROR_MEMORY;
-    if (result == WHIT_OK && !has_known_types(&header)) {
-        log_error(log, "%s: its header names a type of numbers that PLY does not have", path);
+    *paint = (struct ply_paint){.scale = {1, 1}};
+    whit_result result = read_header(*data, *size_bytes, &header) ? WHIT_OK : WHIT_ERROR_MEMORY;
+    uint32_t line = find_bad_type(&header);
+    if (result == WHIT_OK && line) {
+        log_error(&scene->log, "%s:%u: its header names a type of numbers that PLY does not have",
+                  path, line);
         result = WHIT_ERROR_INPUT;
     }
     bool has_data = header.end <= *size_bytes;
     if (result == WHIT_OK && has_data)
-        result = check_elements(log, path, data, *size_bytes, &header);
-    if (result == WHIT_OK && has_data)
-        *size_bytes = keep_read(data, &header);
+        result = check_elements(&scene->log, path, *data, *size_bytes, &header);
+    if (result == WHIT_OK && has_data) {
+        struct output kept = {.bytes = array_alloc(*size_bytes + 1, 1)};
+        if (!kept.bytes || !keep_read(&kept, *data, &header, paint)) {
+            free(kept.bytes);
+            result = WHIT_ERROR_MEMORY;
+        } else {
+            read_paint(&header, find_element(&header, "vertex"), paint);
+            note_unread(scene, path, &header, paint);
+            free(*data);
+            *data = kept.bytes;
+            *size_bytes = kept.used;
+        }
+    }
     header_finish(&header);
     return result;
 }

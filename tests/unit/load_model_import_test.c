@@ -123,6 +123,7 @@ TEST(arrays_may_not_be_claimed_twice)
 {
     char reason[128];
     struct block block = good_block();
+    block.record.vertex_count = 4; /* the last position is that of the indices */
     for (int i = IMPORT_NORMALS; i < IMPORT_INDICES; i++)
         block.record.arrays[i] = sizeof(struct import_header);
     assert_false(parse(&block, sizeof block, reason));
@@ -329,9 +330,8 @@ TEST_IN(faces_that_a_ply_lacks_are_told, fixture_begin, fixture_end)
          "face 2 of 2 is cut short, missing or not of numbers"},
         {FACES_HEADER("ascii") "0 0 0\n1 0\n0 1 0\n3 0 1 2\n3 0 1 2\n",
          "vertex 2 of 3 is cut short, missing or not of numbers"},
-        {FACES_HEADER("ascii") "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n0\n", "face 2 of 2 has no corners"},
         {"ply\nformat ascii 1.0\nelement vertex 0\nproperty flout x\nend_header\n",
-         "its header names a type of numbers that PLY does not have"},
+         "a.ply:4: its header names a type of numbers that PLY does not have"},
         {FACES_HEADER("binary_big_endian") "123456789\3\1\1\1\3\1\1",
          "face 2 of 2 is cut short, missing or not of numbers"},
     };
@@ -340,6 +340,92 @@ TEST_IN(faces_that_a_ply_lacks_are_told, fixture_begin, fixture_end)
     }
     const char *whole = FACES_HEADER("ascii") "0 0 0\n1 0 0\n0 1 0\n\n3 0 1 2\r\n3 0 1 2";
     assert_int_equal(fixture_load(put_text("a.ply", whole)), WHIT_OK);
+}
+
+TEST_IN(faces_without_corners_are_dropped, fixture_begin, fixture_end)
+{
+    static const char ascii[] = FACES_HEADER("ascii") "0 0 0\n1 0 0\n0 1 0\n0\n3 0 1 2";
+    static const char binary[] = FACES_HEADER("binary_big_endian") "\0\0\0\1\0\0\0\1\0\0\3\0\1\2";
+    for (int i = 0; i < 2; i++) {
+        const struct scene_mesh *mesh = fixture_mesh(
+            put_data("a.ply", i ? binary : ascii, (i ? sizeof binary : sizeof ascii) - 1));
+        assert_int_equal(mesh->triangle_count, 1);
+        assert_true(fixture_noted("a.ply: 1 faces without corners were dropped"));
+    }
+}
+
+TEST_IN(faces_may_stand_in_front_of_vertices, fixture_begin, fixture_end)
+{
+    const struct scene_mesh *mesh = fixture_mesh(put_text(
+        "a.ply", "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
+                 "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                 "end_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n"));
+    assert_int_equal(mesh->triangle_count, 1);
+    assert_float_equal(mesh->positions[3 * mesh->indices[1]], 1, 0);
+}
+
+#define COLORS_HEADER(type, name)                                                                  \
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"                \
+    "property float z\nproperty " type " " name "red\nproperty " type " " name                     \
+    "green\nproperty " type " " name "blue\nelement face 1\n"                                      \
+    "property list uchar int vertex_indices\nend_header\n"
+
+/* assimp divides some types by another number than that of the file's range. */
+TEST_IN(colors_of_all_types, fixture_begin, fixture_end)
+{
+    static const struct {
+        const char *header, *color;
+    } rows[] = {
+        {COLORS_HEADER("uchar", ""), "255 128 0"},
+        {COLORS_HEADER("uchar", "diffuse_"), "255 128 0"},
+        {COLORS_HEADER("int", ""), "255 128 0"},
+        {COLORS_HEADER("uint", ""), "255 128 0"},
+        {COLORS_HEADER("short", ""), "255 128 0"},
+        {COLORS_HEADER("ushort", ""), "65535 32896 0"},
+        {COLORS_HEADER("float", ""), "255 128 0"},
+        {COLORS_HEADER("double", ""), "1 0.50196078 0"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        own_memory char *text =
+            string_format("%s0 0 0 %s\n1 0 0 %s\n0 1 0 %s\n3 0 1 2\n", rows[i].header,
+                          rows[i].color, rows[i].color, rows[i].color);
+        const struct scene_mesh *mesh = fixture_mesh(put_text("a.ply", text));
+        assert_non_null(mesh->colors);
+        assert_float_equal(mesh->colors[0], 1, 1e-4);
+        assert_float_equal(mesh->colors[1], 0.2158605, 1e-4); /* sRGB 128 */
+        assert_float_equal(mesh->colors[2], 0, 1e-5);
+        assert_float_equal(mesh->colors[3], 1, 0);
+    }
+}
+
+TEST_IN(colors_of_faces_and_materials_are_noted, fixture_begin, fixture_end)
+{
+    const char *text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                       "property float y\nproperty float z\nelement face 1\n"
+                       "property list uchar int vertex_indices\nproperty uchar red\n"
+                       "element material 1\nproperty uchar ambient_red\nend_header\n"
+                       "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255\n7\n";
+    assert_int_equal(fixture_load(put_text("a.ply", text)), WHIT_OK);
+    assert_true(fixture_noted("a.ply: colours of 1 faces are not read"));
+    assert_true(fixture_noted("a.ply: its materials are not read"));
+}
+
+/* The file is searched for as those of MTL are. */
+TEST_IN(textures_of_a_ply, fixture_begin, fixture_end)
+{
+    put_text("my bricks.png", "no picture");
+    const char *text = "ply\nformat ascii 1.0\ncomment TextureFile dir\\my bricks.png\n"
+                       "comment TextureFile b.png\nelement vertex 3\nproperty float x\n"
+                       "property float y\nproperty float z\nproperty float s\nproperty float t\n"
+                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                       "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
+    const struct scene_mesh *mesh = fixture_mesh(put_text("a.ply", text));
+    const struct scene_material *material = &fixture.scene->materials[mesh->materials[0]];
+    assert_int_not_equal(material->textures[SCENE_SLOT_DIFFUSE].texture, SCENE_NONE);
+    assert_float_equal(material->diffuse[0], 1, 0);
+    assert_true(fixture_noted("texture `my bricks.png`"));
+    assert_false(fixture_noted("no such file"));
+    assert_true(fixture_noted("a.ply: of its textures only the first is drawn"));
 }
 
 #define UNREAD_HEADER(format)                                                                      \

@@ -124,6 +124,14 @@ TEST_IN(vertex_colors, fixture_begin, fixture_end)
     assert_float_equal(fixture.scene->materials[mesh->materials[0]].diffuse[0], 1, 0);
 }
 
+TEST_IN(vertex_colors_may_be_bytes, fixture_begin, fixture_end)
+{
+    const struct scene_mesh *mesh =
+        load_obj("v 0 0 0 255 0 0\nv 1 0 0 0 51 0\nv 0 1 0 0 0 255\nf 1 2 3\n");
+    assert_float_equal(mesh->colors[4 * mesh->indices[0]], 1, 0);
+    assert_float_equal(mesh->colors[4 * mesh->indices[1] + 1], 0.2, 1e-6);
+}
+
 /* Vertices without a colour, of which the first stands above all colours: they are white. */
 TEST_IN(vertices_without_a_color_among_colors, fixture_begin, fixture_end)
 {

@@ -94,6 +94,8 @@ TEST_IN(faces_that_an_off_lacks_are_told, fixture_begin, fixture_end)
     fixture_refused(put_text("a.off", "OFF # x\n4 2 0\n" SQUARE "3 0 1 2\n"),
                     "a.off: face 2 of 2 is cut short or missing");
     fixture_refused(put_text("a.off", "5 0\n" SQUARE), "a.off: vertex 5 of 5 is cut short");
+    fixture_refused(put_text("a.off", "OFF\n4 2 0\n" SQUARE "3 0 1 2\n3 0 2 4\n"),
+                    "a.off: face 2 of 2 names a vertex that is not there");
     messages.errors = 0;
     load(put_text("a.off", "OFF\n4 2 0\n" SQUARE "3 0 1 2\n10 0 1 2 3 0 1 2 3 0 1\n"));
     assert_true(fixture_noted("a.off: 1 faces of more than 9 corners are not read"));
