@@ -56,6 +56,7 @@ struct import_counts {
     /* of a GLB */
     uint32_t skins, animations, lights, cameras, pictures, color_groups;
     uint32_t wraps, uv_sets, parameters, hidden; /* unread_count */
+    uint32_t composites, mixed;                  /* threemf_read */
 };
 
 struct import_block {

@@ -17,6 +17,7 @@
 #include "base/key_table.h"
 #include "load/importer_glb.h"
 #include "load/part.h"
+#include "load/threemf.h"
 
 /* --- the only files that assimp sees ------------------------------------------------------- */
 
@@ -327,16 +328,19 @@ static bool write_block(struct flat *flat, void *to, child_write write)
     return ok;
 }
 
-static int write_error(const char *text, void *to, child_write write)
+static int refuse(const char *who, const char *text, void *to, child_write write)
 {
     const uint32_t magic = IMPORT_ERROR_MAGIC;
-    if (strstr(text, "bad_alloc"))
-        return CHILD_EXIT_MEMORY;
-    if (!text[0])
-        text = "refused without a reason";
-    bool ok = write(to, &magic, sizeof magic) && write(to, "assimp: ", 8) &&
+    bool ok = write(to, &magic, sizeof magic) && write(to, who, strlen(who)) &&
               write(to, text, strlen(text));
     return ok ? 0 : 1;
+}
+
+static int write_error(const char *text, void *to, child_write write)
+{
+    if (strstr(text, "bad_alloc"))
+        return CHILD_EXIT_MEMORY;
+    return refuse("assimp: ", text[0] ? text : "refused without a reason", to, write);
 }
 
 _Static_assert(sizeof(struct import_header) % 8 == 0, "records follow the header");
@@ -447,6 +451,12 @@ int importer_assimp_run(void *user, void *to, child_write write)
     struct library library = {.request = request};
     struct import_counts counts = {0};
     int code;
+    if (request->kind == IMPORT_3MF) {
+        const struct import_file *file = &request->files[0];
+        const struct threemf_head head = threemf_read(file->data, file->size_bytes);
+        if (head.refused[0])
+            return refuse("", head.refused, to, write);
+    }
     const struct aiScene *scene = import(&library);
     if (!scene)
         return library.lacks_memory ? CHILD_EXIT_MEMORY

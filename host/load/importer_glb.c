@@ -72,6 +72,8 @@ static void place_3mf(const struct import_file *file, struct import_counts *coun
     const struct threemf_head head = threemf_read(file->data, file->size_bytes);
     double metres = head.unit_m;
     counts->color_groups = head.color_groups;
+    counts->composites = head.composites;
+    counts->mixed = head.mixed;
     set_row(out, 0, 0, metres);
     set_row(out, 1, 2, metres);
     set_row(out, 2, 1, -metres);

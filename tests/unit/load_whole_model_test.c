@@ -523,7 +523,8 @@ static void add_file(struct package *package, const char *name, const char *text
     package->entries++;
 }
 
-static const char *write_3mf(const char *unit, bool deflated)
+/* more: behind the triangle. */
+static const char *write_3mf_with(const char *unit, bool deflated, const char *more)
 {
     struct package package = {0};
     char *model = string_format(
@@ -534,9 +535,9 @@ static const char *write_3mf(const char *unit, bool deflated)
         "<basematerials id='1'><base name='painted' displaycolor='#FF8000'/></basematerials>"
         "<object id='2' type='model' pid='1' pindex='0'><mesh><vertices>"
         "<vertex x='0' y='0' z='0'/><vertex x='100' y='0' z='0'/><vertex x='0' y='50' z='200'/>"
-        "</vertices><triangles><triangle v1='0' v2='1' v3='2' pid='1' p1='0'/></triangles></mesh>"
+        "</vertices><triangles><triangle v1='0' v2='1' v3='2' pid='1' p1='0'/>%s</triangles></mesh>"
         "</object></resources><build><item objectid='2'/></build></model>",
-        unit);
+        unit, more);
     assert_non_null(model);
     add_file(&package, "[Content_Types].xml",
              "<?xml version='1.0'?><Types xmlns='http://schemas.openxmlformats.org/package/2006/"
@@ -559,6 +560,11 @@ static const char *write_3mf(const char *unit, bool deflated)
     put(package.bytes, &package.size, ends, sizeof ends);
     put(package.bytes, &package.size, "\0", 2);
     return put_data("a.3mf", package.bytes, package.size);
+}
+
+static const char *write_3mf(const char *unit, bool deflated)
+{
+    return write_3mf_with(unit, deflated, "");
 }
 
 TEST_IN(units_of_3mf, fixture_begin, fixture_end)
@@ -585,13 +591,41 @@ TEST_IN(units_of_3mf, fixture_begin, fixture_end)
     assert_true(fixture_noted("a.3mf: 1 colour group is not read"));
 }
 
+TEST_IN(materials_that_a_3mf_loses_are_named, fixture_begin, fixture_end)
+{
+    load(write_3mf_with("", true, "<triangle v1='0' v2='2' v3='1'/>"));
+    assert_false(fixture_noted("one of its materials"));
+    load(write_3mf_with("", true,
+                        "<triangle v1='0' v2='2' v3='1' pid='1' p1='1'/>"
+                        "<!--<m:compositematerials id='9'/>-->"));
+    assert_true(fixture_noted("a.3mf: 1 object is drawn in one of its materials"));
+    assert_true(fixture_noted("a.3mf: 1 list of composite materials is not read"));
+}
+
+TEST_IN(what_a_3mf_requires_is_not_left_out, fixture_begin, fixture_end)
+{
+    static const char colors[] = "requiredextensions='c'";
+    static const char beams[] = "xmlns:b='http://x/beamlattice/' requiredextensions='c b'";
+    load(write_3mf(colors, false));
+    fixture_refused(write_3mf(beams, true),
+                    "a.3mf: it requires the extension `b` (http://x/beamlattice/)");
+    fixture_refused(write_3mf_with("", false, "<component p:path='/3D/o.model'/>"),
+                    "a.3mf: it has objects in several files");
+    fixture_refused(write_3mf_with("", false,
+                                   "</triangles></mesh></object><object id='3'>"
+                                   "<components><component objectid='3'/></components>"
+                                   "</object><object id='4'><mesh><triangles>"),
+                    "a.3mf: the object 3 is a part of itself");
+}
+
 /* --- parts that are not read ---------------------------------------------------------------- */
 
 TEST_IN(rubbish_is_refused, fixture_begin, fixture_end)
 {
     static const char *const names[] = {"a.fbx", "a.dae", "a.3mf", "a.off"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        fixture_refused(put_text(names[i], "no model at all\n"), "assimp: ");
+        fixture_refused(put_text(names[i], "no model at all\n"),
+                        i == 2 ? "it is no ZIP archive" : "assimp: ");
     }
     fixture_refused(write_3mf("<", false), "assimp: the file has no model");
 }
