@@ -9,6 +9,16 @@
 #include "base/file.h"
 #include "base/text.h"
 
+/* Writes keywords in upper case, in which assimp does not know them, if they stand at `at`. */
+static void hide_keyword(char *at)
+{
+    static const char *const keywords[] = {"facet", "vertex", "solid", "loop"};
+    for (size_t i = 0; i < sizeof keywords / sizeof *keywords; i++)
+        if (strncmp(at, keywords[i], strlen(keywords[i])) == 0)
+            for (size_t k = 0; keywords[i][k]; k++)
+                at[k] = (char)toupper((unsigned char)at[k]);
+}
+
 /* Moves `solid` to the begin of the file, and writes all but the names of solids in lower case. */
 static void repair_text(char *text, size_t *size_bytes)
 {
@@ -22,7 +32,9 @@ static void repair_text(char *text, size_t *size_bytes)
     for (char *at = text; *at; at++) {
         in_name |= isblank((unsigned char)*at) && at - text >= 5 && memcmp(at - 5, "solid", 5) == 0;
         in_name &= *at != '\n' && *at != '\r';
-        if (!in_name)
+        if (in_name)
+            hide_keyword(at);
+        else
             *at = (char)tolower((unsigned char)*at);
     }
 }
@@ -105,6 +117,10 @@ static const char *skip_corners(const char *at, unsigned long long vertex_count,
 
 static whit_result check_off(struct scene *scene, const char *path, const char *text)
 {
+    if (strncmp(text, "OFF BINARY", 10) == 0) {
+        log_error(&scene->log, "%s: a binary OFF is not read", path);
+        return WHIT_ERROR_INPUT;
+    }
     static const char *const names[] = {"vertex", "face"};
     unsigned long long counts[2], wide = 0, coloured = 0;
     const char *at = text + strcspn(text, " \t\n");
@@ -130,6 +146,11 @@ static whit_result check_off(struct scene *scene, const char *path, const char *
             wide += corners > OFF_CORNERS_MAX;
             coloured += what == 1 && *end != '\n';
         }
+    }
+    if (wide && wide == counts[1]) {
+        log_error(&scene->log, "%s: all its faces have more than %d corners, which are not read",
+                  path, OFF_CORNERS_MAX);
+        return WHIT_ERROR_INPUT;
     }
     if (wide)
         scene_note(scene, SCENE_NOTE_WARNING, "%s: %llu faces of more than %d corners are not read",

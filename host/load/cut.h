@@ -6,8 +6,8 @@
 
 /* Logs an error if a binary STL has fewer triangles than it says. assimp 5.2 reads none with bytes
    behind its triangles: these are cut off *size_bytes, and noted. It knows the keywords of a text
-   in lower case alone, and no blank in front of them: writes them so. A zero byte follows `data`,
-   before and after. */
+   in lower case alone, also within names, and no blank in front of them: writes them so. A zero
+   byte follows `data`, before and after. */
 WHIT_CHECK whit_result cut_check_stl(struct scene *scene, const char *path, uint8_t *data,
                                      size_t *size_bytes);
 /* Logs an error if an OFF has fewer vertices or faces, each in a line of its own, than it says,

@@ -41,8 +41,12 @@ static bool split(struct gltf *gltf, const uint8_t **json, size_t *json_bytes)
     size_t size = gltf->file_bytes;
     *json = file;
     *json_bytes = size;
-    if (size < 4 || read_u32(file) != GLB_MAGIC)
+    if (size < 4 || read_u32(file) != GLB_MAGIC) {
+        size_t mark_bytes = size >= 3 ? text_mark_bytes((const char *)file) : 0;
+        *json += mark_bytes;
+        *json_bytes -= mark_bytes;
         return true;
+    }
     if (size < GLB_HEADER_BYTES + GLB_CHUNK_BYTES)
         return fail_file(gltf, "the GLB ends within its header");
     if (read_u32(file + 4) != 2)

@@ -57,7 +57,13 @@ whit_result gltf_decode_uri(const char *uri, uint8_t **data, size_t *size_bytes)
     uint8_t *out = array_alloc(length / 4 * 3 + 3, 1);
     uint32_t bits = 0, count = 0;
     for (; out && *text && *text != '='; text++) {
-        int digit = base64_digit(*text);
+        int high = *text == '%' ? hex_digit(text[1]) : -1;
+        int low = high >= 0 ? hex_digit(text[2]) : -1;
+        char letter = low >= 0 ? (char)(high * 16 + low) : *text;
+        text += low >= 0 ? 2 : 0;
+        if (letter == '=')
+            break;
+        int digit = base64_digit(letter);
         if (digit < 0) {
             free(out);
             return WHIT_ERROR_INPUT;

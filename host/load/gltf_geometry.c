@@ -177,6 +177,10 @@ static void note_lost(const struct gltf *gltf, const struct gltf_primitive *prim
                       const struct part *part)
 {
     uint32_t promised = triangles_of(primitive);
+    if (primitive->mode == MODE_TRIANGLES && primitive->corner_count % 3)
+        scene_note(gltf->scene, SCENE_NOTE_WARNING,
+                   "%s: %s: its last %u corners are no triangle and were dropped",
+                   path_name(gltf->request->path), primitive->at.text, primitive->corner_count % 3);
     if (part->triangle_count < promised)
         scene_note(gltf->scene, SCENE_NOTE_WARNING,
                    "%s: %s: %u of %u triangles are damaged and were dropped",

@@ -55,8 +55,8 @@ struct import_counts {
     uint64_t points, lines, bad_faces, face, corners;
     /* of a GLB */
     uint32_t skins, animations, lights, cameras, pictures, color_groups;
-    uint32_t wraps, uv_sets, parameters, hidden; /* unread_count */
-    uint32_t composites, mixed;                  /* threemf_read */
+    uint32_t wraps, uv_sets, parameters, bind_shapes, hidden; /* unread_count */
+    uint32_t composites, mixed;                               /* threemf_read */
 };
 
 struct import_block {

@@ -18,6 +18,7 @@
 #include "load/importer_glb.h"
 #include "load/part.h"
 #include "load/threemf.h"
+#include "load/unread.h"
 
 /* --- the only files that assimp sees ------------------------------------------------------- */
 
@@ -457,6 +458,9 @@ int importer_assimp_run(void *user, void *to, child_write write)
         if (head.refused[0])
             return refuse("", head.refused, to, write);
     }
+    const char *refusal = request->kind == IMPORT_DAE ? unread_refusal(request->files) : NULL;
+    if (refusal)
+        return refuse("", refusal, to, write);
     const struct aiScene *scene = import(&library);
     if (!scene)
         return library.lacks_memory ? CHILD_EXIT_MEMORY

@@ -227,6 +227,8 @@ static void note_dropped(struct scene *scene, const char *path, const struct imp
                    counts->uv_sets},
                   {"parameter of an effect is not read", "parameters of effects are not read",
                    counts->parameters},
+                  {"bind_shape_matrix is not applied", "bind_shape_matrix are not applied",
+                   counts->bind_shapes},
                   {"hidden node is drawn", "hidden nodes are drawn", counts->hidden}};
     for (size_t i = 0; i < sizeof unread / sizeof *unread; i++)
         if (unread[i].count)

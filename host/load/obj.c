@@ -236,6 +236,13 @@ static bool check_face(struct face_check *check, const char *at)
             bool starts = strchr("+-0123456789", *at) && *at;
             char *end = (char *)(uintptr_t)at;
             long long index = starts ? strtoll(at, &end, 10) : 0;
+            if (end == at && kind == 0) {
+                char word[32];
+                snprintf(word, sizeof word, "%.*s", (int)strcspn(at, " \t\n"), at);
+                log_error(&check->scene->log, "%s:%u: a face names `%s`, which is no number",
+                          check->path, check->line, text_token(word).text);
+                return false;
+            }
             if (end > at && !check_index(check, kind, index))
                 return false;
             at = end;
@@ -249,6 +256,7 @@ static bool check_face(struct face_check *check, const char *at)
 whit_result obj_check_faces(struct scene *scene, const char *path, const char *text)
 {
     struct face_check check = {.scene = scene, .path = path, .line = 1};
+    uint32_t curves = 0;
     for (const char *at = text; *at; at += strcspn(at, "\n"), at += *at != 0) {
         int kind = kind_of_line(at);
         if (kind >= 0 && kind < NAMED_KINDS)
@@ -258,9 +266,20 @@ whit_result obj_check_faces(struct scene *scene, const char *path, const char *t
         int kind = kind_of_line(at);
         if (kind == NAMED_KINDS && !check_face(&check, at))
             return WHIT_ERROR_INPUT;
+        uint32_t words =
+            kind ? 0 : count_words((const uint8_t *)at, (const uint8_t *)at + strcspn(at, "\n"));
+        if (words > 7) {
+            log_error(&scene->log, "%s:%u: a vertex has %u numbers, at most 6 are possible", path,
+                      check.line, words - 1);
+            return WHIT_ERROR_INPUT;
+        }
+        curves += strncmp(at, "curv", 4) == 0 || strncmp(at, "surf", 4) == 0;
         if (kind >= 0 && kind < NAMED_KINDS)
             check.above[kind]++;
     }
+    if (curves)
+        scene_note(scene, SCENE_NOTE_INFO, "%s: %u curves and surfaces are not drawn",
+                   path_name(path), curves);
     return WHIT_OK;
 }
 
@@ -354,7 +373,7 @@ static whit_result read_library(struct scene *scene, const char *obj_path, const
 {
     uint8_t *data = NULL;
     size_t size = 0;
-    char *written = roots_join(obj_path, name);
+    char *written = picture_find_named(&scene->roots, obj_path, name);
     char *path = written ? picture_find(&scene->roots, written) : NULL;
     free(written);
     if (!path)

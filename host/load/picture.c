@@ -366,13 +366,22 @@ char *picture_find_named(const struct roots *roots, const char *from, const char
     char *path = roots_join(from, slashed);
     char *bare = path_beside(from, path_name(slashed));
     free(slashed);
-    if (path && bare && roots_reach(roots, path) != REACH_FILE &&
-        roots_reach(roots, bare) == REACH_FILE) {
-        free(path);
-        return bare;
+    if (!path || !bare || roots_reach(roots, path) == REACH_FILE) {
+        free(bare);
+        return path;
     }
-    free(bare);
-    return path;
+    if (roots_reach(roots, bare) != REACH_FILE) { /* in another case */
+        char *cased = picture_find(roots, path), *beside = picture_find(roots, bare);
+        bool found = cased && roots_reach(roots, cased) != REACH_FILE && beside &&
+                     roots_reach(roots, beside) == REACH_FILE;
+        free(cased);
+        free(bare);
+        bare = found ? beside : NULL;
+        if (!found)
+            free(beside);
+    }
+    free(bare ? path : NULL);
+    return bare ? bare : path;
 }
 
 void picture_inflate(const uint8_t *data, size_t size_bytes, char *out, int out_bytes)

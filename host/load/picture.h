@@ -45,8 +45,8 @@ void picture_inflate(const uint8_t *data, size_t size_bytes, char *out, int out_
    A path that leads out of the roots is not searched. */
 char *picture_find(const struct roots *roots, const char *path);
 /* The path of a texture that the model `from` names: as written if that file exists; else its bare
-   name beside the model, since many paths are of the exporter's machine; else as written, for
-   picture_find. To free(); NULL when memory runs out. */
+   name beside the model, also in another case, since many paths are of the exporter's machine; else
+   as written, for picture_find. To free(); NULL when memory runs out. */
 char *picture_find_named(const struct roots *roots, const char *from, const char *name);
 
 #endif

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* memmem */
 #include "load/unread.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* A part of the file. */
@@ -84,6 +85,34 @@ static uint32_t count_parameters(struct span in)
     return count;
 }
 
+static bool is_one(struct span in)
+{
+    bool one = true;
+    for (int i = 0; i < 16; i++) {
+        char text[64] = "";
+        while (in.at < in.end && *in.at <= ' ')
+            in.at++;
+        for (size_t k = 0; in.at<in.end && * in.at> ' ' && *in.at != '<' && k < sizeof text - 1;)
+            text[k++] = *in.at++;
+        one &= strtod(text, NULL) == (i % 5 == 0);
+    }
+    return one;
+}
+
+static uint32_t count_bind_shapes(struct span in)
+{
+    uint32_t count = 0;
+    while (find(&in, "<bind_shape_matrix>"))
+        count += !is_one(in);
+    return count;
+}
+
+const char *unread_refusal(const struct import_file *file)
+{
+    struct span in = span_of(file);
+    return find(&in, "<skew") ? "it has a <skew>, which is not read" : NULL;
+}
+
 /* --- FBX ------------------------------------------------------------------------------------ */
 
 /* In a text, the value of a property stands behind the last comma of its line. In a binary file,
@@ -115,6 +144,7 @@ void unread_count(const struct import_request *request, struct import_counts *co
         counts->wraps = count_wraps(all);
         (void)read_uv_sets(all, &counts->uv_sets);
         counts->parameters = count_parameters(all);
+        counts->bind_shapes = count_bind_shapes(all);
     } else if (request->kind == IMPORT_FBX) {
         static const char one[] = "I\1\0\0", zero[] = "D\0\0\0\0\0\0\0";
         bool binary = holds(all, 8, "Kaydara ", 8);

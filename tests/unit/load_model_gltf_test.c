@@ -606,6 +606,26 @@ TEST_IN(bad_skins_are_refused, fixture_begin, fixture_end)
         fixture_refused(write_skin(rows[i].attributes, rows[i].skin), rows[i].reason);
 }
 
+/* A byte order mark, base64 whose last letters are escaped, and one corner too many. */
+TEST_IN(odd_files_are_read, fixture_begin, fixture_end)
+{
+    own_memory char *text = string_format(
+        "\xef\xbb\xbf" ASSET
+        "'buffers':[{'byteLength':48,'uri':'data:application/octet-stream;base64,"
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAAAA'}],"
+        "'bufferViews':[{'buffer':0,'byteLength':48}],'accessors':[" ACCESSOR(
+            0, 4, "VEC3") "],'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}]," ONE_NODE
+                          "}");
+    assert_non_null(text);
+    char *last = strstr(text, "AAAA'");
+    assert_non_null(last);
+    own_memory char *escaped =
+        string_format("%.*s%%41%%41AA%s", (int)(last - text), text, last + 4);
+    assert_int_equal(fixture_load(put_json("a.gltf", "%s", escaped)), WHIT_OK);
+    assert_int_equal(fixture.scene->meshes[0].triangle_count, 1);
+    assert_true(fixture_noted("primitives[0]: its last 1 corners are no triangle"));
+}
+
 TEST_IN(bad_files_are_refused, fixture_begin, fixture_end)
 {
     static const struct {

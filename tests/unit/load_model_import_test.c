@@ -487,6 +487,18 @@ TEST_IN(keywords_of_an_stl_in_upper_case, fixture_begin, fixture_end)
     assert_string_equal(mesh->groups[0].name, "MyPart");
 }
 
+TEST_IN(keywords_in_the_name_of_an_stl, fixture_begin, fixture_end)
+{
+    static const char *const names[] = {"my part facet vertex", "my endsolid"};
+    for (size_t i = 0; i < 2; i++) {
+        own_memory char *text = string_format("solid %s\nfacet normal 0 0 1\nouter loop\n"
+                                              "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+                                              "endfacet\nendsolid %s\n",
+                                              names[i], names[i]);
+        assert_int_equal(fixture_mesh(put_text("a.stl", text))->triangle_count, 1);
+    }
+}
+
 TEST_IN(bytes_behind_the_triangles_of_an_stl_are_noted, fixture_begin, fixture_end)
 {
     assert_int_equal(fixture_load(put_stl(2, 184)), WHIT_OK);

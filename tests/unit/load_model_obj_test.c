@@ -225,6 +225,15 @@ TEST_IN(libraries_are_found_by_other_case_and_slashes, fixture_begin, fixture_en
     assert_int_equal(fixture.scene->note_count, 0);
 }
 
+TEST_IN(libraries_and_pictures_are_found_beside_the_model, fixture_begin, fixture_end)
+{
+    put_text("wood.png", "no picture");
+    put_text("blue.mtl", "newmtl blue\nmap_Kd tex\\Wood.PNG\n");
+    load_obj("mtllib C:\\models\\Blue.mtl\n" QUAD "usemtl blue\nf 1 2 3\n");
+    assert_true(fixture_noted("texture `wood.png`"));
+    assert_false(fixture_noted("no such file"));
+}
+
 TEST_IN(lines_are_cleaned, fixture_begin, fixture_end)
 {
     put_text("a.mtl", "newmtl red # x\nKd 1 0 0\nnewmtl Material #25\nKd 0 1 0\n");
@@ -256,6 +265,12 @@ TEST_IN(lines_and_points_are_noted, fixture_begin, fixture_end)
     assert_true(fixture_noted("1 points are not drawn"));
 }
 
+TEST_IN(curves_and_surfaces_are_noted, fixture_begin, fixture_end)
+{
+    load_obj(QUAD "f 1 2 3\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nend\ncurv 0 1 1 2\nend\n");
+    assert_true(fixture_noted("a.obj: 2 curves and surfaces are not drawn"));
+}
+
 TEST_IN(nothing_to_draw_is_refused, fixture_begin, fixture_end)
 {
     fixture_refused(put_text("a.obj", QUAD "l 1 2\nl 3 4\n"),
@@ -266,6 +281,10 @@ TEST_IN(index_out_of_range_is_refused, fixture_begin, fixture_end)
 {
     fixture_refused(put_text("a.obj", QUAD "f 1 2 9\n"),
                     "a.obj:5: a face names vertex 9, and there are 4");
+    fixture_refused(put_text("a.obj", QUAD "f 1 2 x\n"),
+                    "a.obj:5: a face names `x`, which is no number");
+    fixture_refused(put_text("a.obj", QUAD "v 0 0 0 1 1 1 1\nf 1 2 3\n"),
+                    "a.obj:5: a vertex has 7 numbers");
     fixture_refused(put_text("a.obj", QUAD "f 1 2 3\nf 1 \\\n2 -5\n"),
                     "a.obj:6: a face names vertex -5, and there are 4");
 }

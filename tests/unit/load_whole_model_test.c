@@ -96,6 +96,9 @@ TEST_IN(faces_that_an_off_lacks_are_told, fixture_begin, fixture_end)
     fixture_refused(put_text("a.off", "5 0\n" SQUARE), "a.off: vertex 5 of 5 is cut short");
     fixture_refused(put_text("a.off", "OFF\n4 2 0\n" SQUARE "3 0 1 2\n3 0 2 4\n"),
                     "a.off: face 2 of 2 names a vertex that is not there");
+    fixture_refused(put_text("a.off", "OFF\n4 1 0\n" SQUARE "10 0 1 2 3 0 1 2 3 0 1\n"),
+                    "a.off: all its faces have more than 9 corners");
+    fixture_refused(put_text("a.off", "OFF BINARY\n\1"), "a.off: a binary OFF is not read");
     messages.errors = 0;
     load(put_text("a.off", "OFF\n4 2 0\n" SQUARE "3 0 1 2\n10 0 1 2 3 0 1 2 3 0 1\n"));
     assert_true(fixture_noted("a.off: 1 faces of more than 9 corners are not read"));
@@ -269,15 +272,6 @@ TEST_IN(collada_binds_its_textures_to_sets, fixture_begin, fixture_end)
     }
 }
 
-TEST_IN(what_collada_loses_is_named, fixture_begin, fixture_end)
-{
-    const char *path = put_edited(write_collada("e", "", ""), "<source>s</source>",
-                                  "<source>s</source><wrap_s>WRAP</wrap_s><wrap_t>CLAMP</wrap_t>");
-    load(put_edited(path, "<color>0.5 0.25 0 1</color>", "<param ref='s'/>"));
-    assert_true(fixture_noted("a.dae: 1 wrap mode is not read"));
-    assert_true(fixture_noted("a.dae: 1 parameter of an effect is not read"));
-}
-
 /* assimp would make a mesh of the nodes. */
 TEST_IN(collada_without_meshes_draws_nothing, fixture_begin, fixture_end)
 {
@@ -350,6 +344,22 @@ TEST_IN(what_moves_is_named, fixture_begin, fixture_end)
     assert_true(fixture_noted("a.dae: 1 animation is not played"));
     assert_true(fixture_noted("a.dae: 1 light is not read"));
     assert_true(fixture_noted("a.dae: 1 camera is not read"));
+}
+
+TEST_IN(what_collada_loses_is_named, fixture_begin, fixture_end)
+{
+    const char *path = put_edited(write_collada("e", "", ""), "<source>s</source>",
+                                  "<source>s</source><wrap_s>WRAP</wrap_s><wrap_t>CLAMP</wrap_t>");
+    load(put_edited(path, "<color>0.5 0.25 0 1</color>", "<param ref='s'/>"));
+    assert_true(fixture_noted("a.dae: 1 wrap mode is not read"));
+    assert_true(fixture_noted("a.dae: 1 parameter of an effect is not read"));
+    path = write_collada("f", moving, moving_nodes);
+    load(path);
+    assert_false(fixture_noted("bind_shape_matrix"));
+    load(put_edited(path, "<bind_shape_matrix>1", "<bind_shape_matrix>2"));
+    assert_true(fixture_noted("a.dae: 1 bind_shape_matrix is not applied"));
+    fixture_refused(put_edited(path, "<translate>", "<skew>9 1 0 0 0 1 0</skew><translate>"),
+                    "a.dae: it has a <skew>, which is not read");
 }
 
 /* --- FBX ------------------------------------------------------------------------------------ */
