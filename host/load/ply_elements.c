@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* memmem */
 #include "load/ply_elements.h"
 
 #include <stdio.h>
@@ -464,18 +465,25 @@ static void put(struct output *to, const uint8_t *from, size_t count)
     to->used += count;
 }
 
+/* Where a word, which the line [at, next) has, stands in it. */
+static const char *find_word(const uint8_t *data, size_t at, size_t next, const char *word)
+{
+    return memmem(data + at, next - at, word, strlen(word)); /* there may be zero bytes */
+}
+
 /* Copies lines of the header without comments, of which it keeps the name of the texture. False:
    memory ran out. */
 static bool put_lines(struct output *to, const uint8_t *data, size_t begin, size_t end,
                       struct ply_paint *paint)
 {
+    static const char texture[] = "TextureFile", diffuse[] = "diffuse_";
     char words[WORDS_MAX][WORD_BYTES];
     for (size_t at = begin, next; at < end; at = next) {
         next = read_line(data, end, at, words);
-        bool names = strcmp(words[0], "comment") == 0 && strcmp(words[1], "TextureFile") == 0;
+        bool names = strcmp(words[0], "comment") == 0 && strcmp(words[1], texture) == 0;
         paint->more_textures |= names && paint->texture;
         if (names && !paint->texture) {
-            const char *name = strstr((const char *)data + at, words[1]) + strlen(words[1]);
+            const char *name = find_word(data, at, next, texture) + strlen(texture);
             name += strspn(name, " \t");
             paint->texture = string_format("%.*s", (int)strcspn(name, "\r\n"), name);
             if (!paint->texture)
@@ -483,12 +491,12 @@ static bool put_lines(struct output *to, const uint8_t *data, size_t begin, size
         }
         if (strcmp(words[0], "comment") == 0 || strcmp(words[0], "obj_info") == 0)
             continue;
-        size_t named = strcspn((const char *)data + at, "_");
-        if (strncmp(words[2], "diffuse_", 8) == 0) {
-            put(to, data + at, named - strlen("diffuse"));
-            put(to, data + at + named + 1, next - at - named - 1);
-        } else
-            put(to, data + at, next - at);
+        const uint8_t *prefix = data + next;
+        if (strncmp(words[2], diffuse, strlen(diffuse)) == 0)
+            prefix = (const uint8_t *)find_word(data, at, next, diffuse);
+        put(to, data + at, (size_t)(prefix - data) - at);
+        if (prefix < data + next)
+            put(to, prefix + strlen(diffuse), next - (size_t)(prefix - data) - strlen(diffuse));
     }
     return true;
 }

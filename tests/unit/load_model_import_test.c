@@ -426,6 +426,11 @@ TEST_IN(textures_of_a_ply, fixture_begin, fixture_end)
     assert_true(fixture_noted("texture `my bricks.png`"));
     assert_false(fixture_noted("no such file"));
     assert_true(fixture_noted("a.ply: of its textures only the first is drawn"));
+    static const char zeros[] = "ply\nformat ascii 1.0\ncomment\0TextureFile \0x\n"
+                                "element vertex 3\nproperty uchar\0diffuse_red\n"
+                                "element face 0\nproperty list uchar int vertex_indices\n"
+                                "end_header\n1\n2\n3\n";
+    assert_int_equal(fixture_load(put_data("b.ply", zeros, sizeof zeros - 1)), WHIT_ERROR_INPUT);
 }
 
 #define UNREAD_HEADER(format)                                                                      \
