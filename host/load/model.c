@@ -242,8 +242,8 @@ static whit_result add_whole(struct scene *scene, const struct model_request *re
     uint32_t first = scene->material_count;
     note_dropped(scene, request->path, &block->counts);
     whit_result result = gltf_load_bytes(scene, request, block->glb, block->glb_bytes);
-    for (uint32_t i = first; kind == IMPORT_FBX && i < scene->material_count;
-         i++) { /* assimp does not pass on the culling of an FBX */
+    /* assimp does not pass on the culling of an FBX. */
+    for (uint32_t i = first; kind == IMPORT_FBX && i < scene->material_count; i++) {
         scene->materials[i].one_sided = false;
         scene->materials[i].two_sided = true;
     }

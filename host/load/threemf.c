@@ -114,7 +114,7 @@ static uint32_t count_lists(const char *text, const char *name)
 /* An object while its tags are read. */
 struct object {
     int id, pid, index; /* index: that of the material in the list `pid` */
-    int first[2];       /* the same of the first triangle */
+    int first[2];       /* the same of the first material that is met */
     bool has_first, mixed;
 };
 
@@ -129,6 +129,17 @@ static bool is_material(const struct lists *lists, int id)
     for (uint32_t i = 0; i < lists->count; i++)
         found |= lists->ids[i] == id;
     return found;
+}
+
+/* assimp draws an object in its own material, or else in that of a triangle. */
+static struct object begin_object(const char *tag, const struct lists *lists)
+{
+    struct object object = {
+        .id = number(tag, "id"), .pid = number(tag, "pid"), .index = number(tag, "pindex")};
+    object.first[0] = object.pid;
+    object.first[1] = object.index;
+    object.has_first = is_material(lists, object.pid);
+    return object;
 }
 
 /* Colours and texture coordinates are no materials here: others tell of them. */
@@ -156,8 +167,7 @@ static void read_objects(const char *text, struct threemf_head *head)
         } else if (is_tag(tag, "basematerials") && lists.count < 64) {
             lists.ids[lists.count++] = number(tag, "id");
         } else if (is_tag(tag, "object")) {
-            object = (struct object){
-                number(tag, "id"), number(tag, "pid"), number(tag, "pindex"), {0}, false, false};
+            object = begin_object(tag, &lists);
         } else if (is_tag(tag, "/object")) {
             head->mixed += object.mixed;
         } else if (is_tag(tag, "component") && object.id >= 0 &&

@@ -36,7 +36,7 @@ static uint32_t count_wraps(struct span in)
 {
     uint32_t count = 0;
     while (find(&in, "<wrap_"))
-        count += !holds(in, sizeof "s>\r\n\t\t\t\t\t\t\t\tWRAP", "WRAP", 4);
+        count += !holds(in, sizeof "s>CLAMP</wrap_s" - 1, "WRAP", 4);
     return count;
 }
 
@@ -138,8 +138,7 @@ static uint32_t count_values(struct span in, const char *name, bool binary, char
 
 void unread_count(const struct import_request *request, struct import_counts *counts)
 {
-    const struct import_file *file = &request->files[0];
-    const struct span all = {(const char *)file->data, (const char *)file->data + file->size_bytes};
+    const struct span all = span_of(&request->files[0]);
     if (request->kind == IMPORT_DAE) {
         counts->wraps = count_wraps(all);
         (void)read_uv_sets(all, &counts->uv_sets);

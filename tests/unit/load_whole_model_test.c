@@ -606,6 +606,11 @@ TEST_IN(materials_that_a_3mf_loses_are_named, fixture_begin, fixture_end)
     load(write_3mf_with("", true, "<triangle v1='0' v2='2' v3='1'/>"));
     assert_false(fixture_noted("one of its materials"));
     load(write_3mf_with("", true,
+                        "</triangles></mesh></object>"
+                        "<object id='3' pid='1' pindex='0'><mesh><triangles>"
+                        "<triangle v1='0' v2='2' v3='1' p1='1'/>"));
+    assert_true(fixture_noted("a.3mf: 1 object is drawn in one of its materials"));
+    load(write_3mf_with("", true,
                         "<triangle v1='0' v2='2' v3='1' pid='1' p1='1'/>"
                         "<!--<m:compositematerials id='9'/>-->"));
     assert_true(fixture_noted("a.3mf: 1 object is drawn in one of its materials"));
