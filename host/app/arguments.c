@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/input.h"
 #include "base/path.h"
 #include "base/text.h"
 #include "settings/quote.h"
@@ -335,32 +336,7 @@ static void take(struct cli_reader *reader, const struct setting *option, void *
     cli_misuse(reader, "--%s%s", option->name, why);
 }
 
-bool cli_read(struct cli_reader *reader, void *own, struct settings *settings)
-{
-    const struct setting *option;
-    while ((option = next(reader)) != NULL)
-        take(reader, option, own, settings);
-    return reader->status < 0;
-}
-
-bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint)
-{
-    return !path || strcmp(path, "-") != 0 || cli_misuse(reader, "%s -: %s", option, hint);
-}
-
-bool cli_check_writable(struct cli_reader *reader, const char *path)
-{
-    if (!path || cli_can_write(path))
-        return true;
-    reader->status = EXIT_USAGE;
-    return false;
-}
-
-bool cli_check_output(struct cli_reader *reader, const char *option, const char *path,
-                      const char *hint)
-{
-    return cli_no_dash(reader, option, path, hint) && cli_check_writable(reader, path);
-}
+/* ---- Files that are written ---- */
 
 static bool are_same(const struct stat *a, const struct stat *b)
 {
@@ -380,9 +356,7 @@ static bool are_one_entry(const char *a, const char *b)
     return same;
 }
 
-/* Whether both name one file, under whatever names. What several outputs may go to, /dev/null, is
-   none. */
-static bool are_one_file(const char *a, const char *b)
+bool cli_same_file(const char *a, const char *b)
 {
     struct stat first, second;
     if (strcmp(a, b) == 0)
@@ -397,12 +371,75 @@ bool cli_check_apart(struct cli_reader *reader, const struct cli_file *files, ui
     for (uint32_t i = 0; i < count; ++i) {
         for (uint32_t k = 0; k < i; ++k) {
             const struct cli_file *a = &files[k], *b = &files[i];
-            if (a->path && b->path && (a->written || b->written) && are_one_file(a->path, b->path))
+            if ((a->written || b->written) && a->path && b->path && !is_input(b->path) &&
+                cli_same_file(a->path, b->path))
                 return cli_misuse(reader, "%s: %s and %s name the same file", b->path, a->name,
                                   b->name);
         }
     }
     return true;
+}
+
+/* Refuses options that would write over a file that the command reads, or over each other's. */
+static bool check_files(struct cli_reader *reader, const void *own, const struct settings *settings)
+{
+    enum { OPTIONS_OF_FILES_MAX = 16, NAME_BYTES = 32 };
+    struct cli_file files[CLI_OTHERS_MAX + OPTIONS_OF_FILES_MAX];
+    char names[OPTIONS_OF_FILES_MAX][NAME_BYTES], *name = names[0];
+    const char *shader = settings ? settings->shader : "",
+               *sky = settings ? settings->environment : "";
+    uint32_t count = 0;
+    /* The arguments as help names them: `[SCENE] [options]`, `A B [options]`, `[BENCH] [MODEL
+     * ...]`. */
+    char first[NAME_BYTES] = "", second[NAME_BYTES] = "";
+    const char *words = reader->command->arguments;
+    if (sscanf(words + (words[0] == '['), "%31[A-Z]%*[] []%31[A-Z]", first, second) < 2)
+        memcpy(second, first, sizeof second);
+    if (strcmp(first, "BENCH") != 0)
+        files[count++] = (struct cli_file){first, reader->positional, false};
+    files[count++] = (struct cli_file){second, reader->second, false};
+    for (uint32_t i = 0; i < reader->other_count; ++i)
+        files[count++] = (struct cli_file){second, reader->others[i], false};
+    for (const struct setting *row = reader->command->options; row->name; ++row) {
+        if (row->kind != SETTING_NAME ||
+            !(strstr(row->argument, "FILE") || strcmp(row->argument, "PICTURE") == 0))
+            continue;
+        const char *path;
+        memcpy(&path, (const char *)own + row->offset, sizeof path);
+        snprintf(name, NAME_BYTES, row->letter == 'o' ? "-o" : "--%s", row->name);
+        files[count++] = (struct cli_file){name, path, row->written};
+        name += NAME_BYTES;
+    }
+    files[count++] = (struct cli_file){"--shader", shader[0] ? shader : NULL, false};
+    files[count++] = (struct cli_file){"--environment", sky[0] ? sky : NULL, false};
+    return cli_check_apart(reader, files, count);
+}
+
+bool cli_read(struct cli_reader *reader, void *own, struct settings *settings)
+{
+    const struct setting *option;
+    while ((option = next(reader)) != NULL)
+        take(reader, option, own, settings);
+    return reader->status < 0 && (!own || check_files(reader, own, settings));
+}
+
+bool cli_no_dash(struct cli_reader *reader, const char *option, const char *path, const char *hint)
+{
+    return !path || strcmp(path, "-") != 0 || cli_misuse(reader, "%s -: %s", option, hint);
+}
+
+bool cli_check_writable(struct cli_reader *reader, const char *path)
+{
+    if (!path || cli_can_write(path))
+        return true;
+    reader->status = EXIT_USAGE;
+    return false;
+}
+
+bool cli_check_output(struct cli_reader *reader, const char *option, const char *path,
+                      const char *hint)
+{
+    return cli_no_dash(reader, option, path, hint) && cli_check_writable(reader, path);
 }
 
 /* ---- Words of a file ---- */

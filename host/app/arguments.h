@@ -35,7 +35,8 @@ void cli_reader_init(struct cli_reader *reader, const struct cli_command *comman
                      char **argv);
 /* Reads all arguments: own options into `own`, settings into `settings`, either of which is NULL
    where the command has none. False: exit with `status`. From a file of settings (`where`) only
-   settings are accepted. */
+   settings are accepted. Options with `written` that name a file which the command reads, or each
+   other's, are refused here. */
 bool cli_read(struct cli_reader *reader, void *own, struct settings *settings);
 /* Gives the next word of a line, unquoted in place by the rules of a shell: quoted text is literal
    except for a backslash in double quotes, and a backslash keeps the next character. $'...' is read
@@ -65,6 +66,9 @@ struct cli_file {
     const char *path; /* NULL: there is none */
     bool written;
 };
+/* Whether both name one file, under whatever names. What several outputs may go to, /dev/null, is
+   none. */
+bool cli_same_file(const char *a, const char *b);
 /* Calls cli_misuse where two of these, of which one is written, are the same file. */
 bool cli_check_apart(struct cli_reader *reader, const struct cli_file *files, uint32_t count);
 

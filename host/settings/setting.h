@@ -65,6 +65,7 @@ struct setting {
                  char why[SETTING_WHY_BYTES]);
     bool (*write)(const void *record, char text[SETTING_VALUE_BYTES]);
     bool developer; /* for developers of whit: only --help-all lists it */
+    bool written;   /* only for SETTING_NAME: the value is a file that the command writes */
 
     /* Only for the table of settings (settings.h). */
     uint32_t commands; /* bits of enum settings_command */

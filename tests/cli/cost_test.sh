@@ -285,7 +285,7 @@ refuse 2 "no error at all" "a number from" cost "$CUBE" --under 0
 refuse 2 "no such metric" "flip, rmse" cost "$CUBE" --metric psnr
 refuse 2 "too many scenes" "too many" cost "$CUBE" "$CUBE"
 refuse 2 "one file to compare" "two files" cost --compare "$CUBE"
-for option in "--json $J" "--knobs aa" "--size 640x480"; do
+for option in "--json $OUT/other.json" "--knobs aa" "--size 640x480"; do
     refuse 2 "$option of no measurement" "takes no ${option%% *}" cost --compare "$J" "$J" $option
 done
 refuse 2 "no report" "no report of" cost --compare "$CUBE" "$CUBE"

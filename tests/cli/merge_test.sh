@@ -143,7 +143,7 @@ refuse 2 "a whole picture" "whole.png: no part of a picture" merge t1.png t2.png
 head -c 700 t3.png >short.png
 refuse 2 "a part that is cut short" "short.png: " merge t1.png t2.png short.png t4.png -o merged.png
 refuse 2 "another kind of file" "a file of its parts' kind, which alone" merge t1.png t2.png t3.png t4.png -o merged.exr
-refuse 2 "a part as the picture" "names one of the parts" merge t1.png t2.png t3.png t4.png -o t1.png
+refuse 2 "a part as the picture" "PART and -o name the same file" merge t1.png t2.png t3.png t4.png -o ./t2.png
 "$WHIT" render "$CUBE" --size 32x32 --tile 1/2 -o p1.pfm -q
 "$WHIT" render "$CUBE" --size 32x32 --tile 2/2 -o p2.pfm -q
 cp p1.pfm keep.pfm && head -c 100 /dev/zero | dd of=p1.pfm bs=1 seek=200 conv=notrunc 2>/dev/null

@@ -73,6 +73,26 @@ refuse 2 "bench --json: a folder" "folder: cannot write: Is a directory" \
     bench report --quick --scenes "$SCENES" --json folder
 rmdir folder
 
+# No command writes over what it reads, by whatever name, nor two outputs into one file.
+cp "$SCENES/cube.json" c.json
+"$WHIT" shader new shade >hit.comp
+cp hit.comp "$OUT/shade"
+ln -s c.json link
+refuse 2 "probe over its scene" "./c.json: SCENE and --json name the same file" probe c.json --pixel 1,1 --json ./c.json
+refuse 2 "probe over its shader" "--json and --shader name the same file" \
+    probe c.json --pixel 1,1 --shader hit.comp --json "$PWD/hit.comp"
+refuse 2 "probe over its sky" "--json and --environment name the same file" \
+    probe c.json --pixel 1,1 --environment sky.exr --json sky.exr
+refuse 2 "hard over its scene" "SCENE and --json name the same file" hard link --json c.json
+refuse 2 "scene over its scene" "SCENE and --triangles name the same file" scene c.json --triangles link
+refuse 2 "render over its recipe" "-o and --recipe name the same file" render c.json --recipe a.png -o ./a.png
+refuse 2 "bench over its model" "MODEL and --json name the same file" bench look c.json --json c.json
+refuse 2 "bench: one file for two" "--json and --plot name the same file" bench rays --json x --plot ./x
+refuse 2 "a dump over the shader" "./hit.comp: is a file of the shader" shader hit.comp --dump .
+check "the scene is as it was" cmp c.json "$SCENES/cube.json"
+check "the shader is as it was" cmp hit.comp "$OUT/shade"
+rm c.json link hit.*
+
 # In a sequence, frames before the one that fails stay.
 mkdir p.1.pfm
 expect 2 "the second of two frames" render "$SCENES/spin.json" --frames 0-1 --size 96x64 -o p.#.pfm

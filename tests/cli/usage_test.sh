@@ -86,7 +86,7 @@ refuse 2 "--stats xml" "text, json" render "$CUBE" -o "$P" --stats xml
 refuse 2 "--time and --frame" "two ways" render "$CUBE" -o "$P" --time 1 --frame 2
 
 refuse 2 "unknown extension" "x.gif: pictures are" render "$CUBE" -o "$OUT/pictures/x.gif"
-refuse 2 "identities as PNG" "x.png: hit identities are .exr" render "$CUBE" -o "$P" --ids "$P"
+refuse 2 "identities as PNG" "ids.png: hit identities are .exr" render "$CUBE" -o "$P" --ids "$OUT/ids.png"
 refuse 2 "--thumbnail of costs" "one picture of colours" render "$CUBE" -o "$P" --thumbnail 64 --view visits
 refuse 2 "--thumbnail 0" "from 1 to 4096" render "$CUBE" -o "$P" --thumbnail 0
 refuse 2 "a dash as picture" "-o -: pictures go to files" render "$CUBE" -o -

@@ -152,8 +152,11 @@ static int work(struct bench *bench)
 
 int main(int argc, char **argv)
 {
-    static const struct cli_command command = {
-        .name = "bench", .takes_many = true, .options = bench_options, .settings = IN_BENCH};
+    static const struct cli_command command = {.name = "bench",
+                                               .arguments = "[BENCH]",
+                                               .takes_many = true,
+                                               .options = bench_options,
+                                               .settings = IN_BENCH};
     static struct bench bench;
     struct cli_reader reader;
     if (argc < 4)

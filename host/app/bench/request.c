@@ -40,7 +40,7 @@ const struct setting bench_options[] = {
     {"runs", 0, "N", "of each case, 1 to 99 (7; shaders: 50; quick: 2)",
      SETTING_AT_COUNT(struct bench_request, runs), .min = 1, .max = SAMPLE_RUNS_MAX},
     {"json", 0, "FILE", "also write all figures as JSON",
-     SETTING_AT_NAME(struct bench_request, json)},
+     SETTING_AT_NAME(struct bench_request, json), .written = true},
     {"scenes", 0, "FOLDER", "where whit's scenes are (./scenes, or beside the program)",
      SETTING_AT_NAME(struct bench_request, scenes)},
     {"naive-limit", 0, NULL, "is gone: `--build sweep` builds the same tree as sweep-naive",
@@ -48,7 +48,7 @@ const struct setting bench_options[] = {
     {"plot", 0, "FILE.svg",
      "rays, frame, start, view, views, look: also draw each row's\n"
      "figure beside its goal",
-     SETTING_AT_NAME(struct bench_request, plot)},
+     SETTING_AT_NAME(struct bench_request, plot), .written = true},
     {"against", 0, "PROGRAM", "frame, start: another whit, timed in turns",
      SETTING_AT_NAME(struct bench_request, against)},
     {"keep", 0, "FOLDER", "rays: leave rays, triangles and hits there",

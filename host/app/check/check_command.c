@@ -58,11 +58,11 @@ static const struct setting options[] = {
      "which has goldens of its own, SUITE.reference.golden (device)",
      SETTING_AT_CHOICE(struct check, on), .values = values_on},
     {"json", 0, "FILE", "also write what came of each case as JSON",
-     SETTING_AT_NAME(struct check, json)},
+     SETTING_AT_NAME(struct check, json), .written = true},
     {"junit", 0, "FILE", "the same as JUnit XML, which CI services show",
-     SETTING_AT_NAME(struct check, junit)},
+     SETTING_AT_NAME(struct check, junit), .written = true},
     {"report", 0, "FILE.html", "the same as one page with pictures, which opens offline",
-     SETTING_AT_NAME(struct check, report)},
+     SETTING_AT_NAME(struct check, report), .written = true},
     {"thumbnails", 0, NULL,
      "with --accept: also keep small pictures beside the golden,\n"
      "for people: SUITE.thumbnails/NAME.png",
@@ -101,8 +101,7 @@ bool check_names_match(const struct check_names *names, const char *name)
 static bool check_outputs(struct cli_reader *reader, const struct check *check)
 {
     static const char *const hint = "for a pipe give /dev/stdout";
-    const struct cli_file files[] = {{"the suite", reader->positional, false},
-                                     {"the golden", check->golden_path, true},
+    const struct cli_file files[] = {{"the golden", check->golden_path, true},
                                      {"--accept-from", check->accept_from, false},
                                      {"--json", check->json, true},
                                      {"--junit", check->junit, true},

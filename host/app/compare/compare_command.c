@@ -45,10 +45,11 @@ static const struct setting options[] = {
     {"diff", 0, "FILE",
      "B - A: .png as colours, blue where B is darker, brown where it is\n"
      "brighter; .exr .pfm as linear numbers",
-     SETTING_AT_NAME(struct compare, diff)},
+     SETTING_AT_NAME(struct compare, diff), .written = true},
     {"flip", 0, "FILE", "FLIP of each pixel: .png as a heat map; .exr .pfm as numbers",
-     SETTING_AT_NAME(struct compare, flip)},
-    {"json", 0, "FILE", "all metrics as JSON", SETTING_AT_NAME(struct compare, json)},
+     SETTING_AT_NAME(struct compare, flip), .written = true},
+    {"json", 0, "FILE", "all metrics as JSON", SETTING_AT_NAME(struct compare, json),
+     .written = true},
     {"ppd", 0, "N", "for FLIP: pixels in one degree of what is seen, 1 to 1000 (67.02)",
      SETTING_AT_NUMBER(struct compare, params.pixels_per_degree), .min = 1.0, .max = 1000.0},
     {0},
@@ -357,14 +358,8 @@ static bool check_request(struct cli_reader *reader, struct compare *compare)
     compare->paths[1] = reader->second;
     if (!compare->paths[1])
         return cli_misuse(reader, "%s missing", compare->paths[0] ? "B is" : "A and B are");
-    const struct cli_file files[] = {{"A", compare->paths[0], false},
-                                     {"B", compare->paths[1], false},
-                                     {"--diff", compare->diff, true},
-                                     {"--flip", compare->flip, true},
-                                     {"--json", compare->json, true}};
     return check_picture(reader, "--diff", compare->diff) &&
            check_picture(reader, "--flip", compare->flip) &&
-           cli_check_apart(reader, files, sizeof files / sizeof *files) &&
            cli_no_dash(reader, "--json", compare->json, "for a pipe give /dev/stdout") &&
            cli_check_writable(reader, compare->diff) && cli_check_writable(reader, compare->flip) &&
            cli_check_writable(reader, compare->json);

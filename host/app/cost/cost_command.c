@@ -50,10 +50,12 @@ static bool read_knobs(const struct setting *setting, const char *list, void *re
 
 static const struct setting options[] = {
     {"html", 0, "FILE", "the report as one page, with a plot and pictures",
-     SETTING_AT_NAME(struct cost, html)},
-    {"json", 0, "FILE", "all figures as JSON", SETTING_AT_NAME(struct cost, json)},
-    {"csv", 0, "FILE", "a row for each setting", SETTING_AT_NAME(struct cost, csv)},
-    {"markdown", 0, "FILE", "the tables as Markdown", SETTING_AT_NAME(struct cost, markdown)},
+     SETTING_AT_NAME(struct cost, html), .written = true},
+    {"json", 0, "FILE", "all figures as JSON", SETTING_AT_NAME(struct cost, json), .written = true},
+    {"csv", 0, "FILE", "a row for each setting", SETTING_AT_NAME(struct cost, csv),
+     .written = true},
+    {"markdown", 0, "FILE", "the tables as Markdown", SETTING_AT_NAME(struct cost, markdown),
+     .written = true},
     {"under", 0, "E",
      "find the cheapest settings with a FLIP of at most E, or by\n"
      "--metric an RMSE",
@@ -84,17 +86,11 @@ static const struct setting options[] = {
 
 static bool check_files(struct cli_reader *reader, const struct cost *cost)
 {
-    enum { FILES = 5 };
-    const struct cli_file files[FILES] = {{"SCENE", reader->positional, false},
-                                          {"--html", cost->html, true},
-                                          {"--json", cost->json, true},
-                                          {"--csv", cost->csv, true},
-                                          {"--markdown", cost->markdown, true}};
-    for (int i = 1; i < FILES; ++i) {
-        if (!cli_check_output(reader, files[i].name, files[i].path, "for a pipe give /dev/stdout"))
-            return false;
-    }
-    return cli_check_apart(reader, files, FILES);
+    static const char *const hint = "for a pipe give /dev/stdout";
+    return cli_check_output(reader, "--html", cost->html, hint) &&
+           cli_check_output(reader, "--json", cost->json, hint) &&
+           cli_check_output(reader, "--csv", cost->csv, hint) &&
+           cli_check_output(reader, "--markdown", cost->markdown, hint);
 }
 
 static void complete(struct cost *cost)

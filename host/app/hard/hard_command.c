@@ -14,13 +14,15 @@ static const struct setting options[] = {
     {"case", 0, "TEXT", "of the built-in cases those with TEXT in their name",
      SETTING_AT_NAME(struct hard, params.filter)},
     {"quick", 0, NULL, "512 rays a row", SETTING_AT_FLAG(struct hard, quick)},
-    {"json", 0, "FILE", "the table as JSON", SETTING_AT_NAME(struct hard, json_path)},
+    {"json", 0, "FILE", "the table as JSON", SETTING_AT_NAME(struct hard, json_path),
+     .written = true},
     {"view", 0, NULL,
      "instead of the table a picture of what camera rays hit:\n"
      "red where that is wrong, yellow where another triangle is\n"
      "within the error of floats; by itself of watertight",
      SETTING_AT_CHOICE(struct hard, drawn), .values = values_hard_view},
-    {"output", 'o', "FILE", "of the picture: .png .exr .pfm", SETTING_AT_NAME(struct hard, output)},
+    {"output", 'o', "FILE", "of the picture: .png .exr .pfm", SETTING_AT_NAME(struct hard, output),
+     .written = true},
     {"size", 0, "WxH", "of the picture (640x480)",
      SETTING_AT_SIZE(struct hard, view.width, view.height)},
     {"camera", 0, "NAME|N|numbers", "as for `whit render`", SETTING_AT_NAME(struct hard, camera)},

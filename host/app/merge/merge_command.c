@@ -17,7 +17,7 @@ struct merge_request {
 static const struct setting_value values_stats[] = {{"json", 1, NULL}, {0}};
 static const struct setting options[] = {
     {"output", 'o', "FILE", "the picture, of the parts' kind: .png, .exr or .pfm",
-     SETTING_AT_NAME(struct merge_request, output)},
+     SETTING_AT_NAME(struct merge_request, output), .written = true},
     {"stats", 0, NULL, "sums over all parts on standard output", .usual = "",
      SETTING_AT_EITHER(struct merge_request, json), .values = values_stats},
     {0},
@@ -40,8 +40,6 @@ static bool check_request(struct cli_reader *reader, struct merge_request *reque
                               "%s and %s: the picture is a file of its parts' kind, which alone "
                               "has all that they hold",
                               request->paths[i], request->output);
-        if (strcmp(request->paths[i], request->output) == 0)
-            return cli_misuse(reader, "%s: -o names one of the parts", request->output);
     }
     if (!whit_image_format_known(request->output, false))
         return cli_misuse(reader, "%s: pictures are .png, .exr or .pfm", request->output);

@@ -35,7 +35,8 @@ static bool read_pixel(const struct setting *setting, const char *value, void *r
 static const struct setting options[] = {
     {"pixel", 0, "X,Y", "which one, from 0,0 at the upper left", .kind = SETTING_OWN,
      .read = read_pixel},
-    {"json", 0, "FILE", "also write all of it as JSON", SETTING_AT_NAME(struct probe, json_path)},
+    {"json", 0, "FILE", "also write all of it as JSON", SETTING_AT_NAME(struct probe, json_path),
+     .written = true},
     {"rays", 0, "N", "most rays that are recorded, 1 to 16383 (16383)",
      SETTING_AT_COUNT(struct probe, max_rays), .min = 1, .max = RAYS_MAX},
     {0},

@@ -17,9 +17,9 @@ enum { CAMERA_NAMES_MAX = 4096 };
 
 static const struct setting options[] = {
     {"output", 'o', "FILE", "the picture: .png (8 bits), .exr or .pfm (floats)",
-     SETTING_AT_NAME(struct render_request, output)},
+     SETTING_AT_NAME(struct render_request, output), .written = true},
     {"ids", 0, "FILE.exr", "also write what each pixel hits: instance, primitive",
-     SETTING_AT_NAME(struct render_request, ids)},
+     SETTING_AT_NAME(struct render_request, ids), .written = true},
     {"frames", 0, "A-B",
      "frames A to B of the animation, into files with the\n"
      "number in place of ####: -o name.####.png",
@@ -32,7 +32,7 @@ static const struct setting options[] = {
     {"distances", 0, "FILE",
      "of --cameras: also write how far away each pixel is, .exr or\n"
      ".pfm, with ####",
-     SETTING_AT_NAME(struct render_request, cameras.distances)},
+     SETTING_AT_NAME(struct render_request, cameras.distances), .written = true},
     {"tile", 0, "I/N",
      "tile I of N alone, rows over the whole width, with its place;\n"
      "`whit merge` puts tiles together, see docs/batch.md",
@@ -104,11 +104,9 @@ static bool can_write(const struct render_request *request, const char *name)
     return can;
 }
 
-static bool check_outputs(struct cli_reader *reader, const struct settings *settings,
-                          const struct render_request *request)
+static bool check_outputs(struct cli_reader *reader, const struct render_request *request)
 {
-    const char *sky = settings->environment[0] ? settings->environment : NULL,
-               *distances = request->cameras.distances;
+    const char *distances = request->cameras.distances;
     if (!request->output)
         return cli_misuse(reader, "-o FILE is missing: where should the picture go?");
     if (!cli_no_dash(reader, "-o", request->output,
@@ -122,12 +120,6 @@ static bool check_outputs(struct cli_reader *reader, const struct settings *sett
         return cli_misuse(reader, "%s: hit identities are .exr", request->ids);
     if (distances && (path_is(distances, "png") || !whit_image_format_known(distances, false)))
         return cli_misuse(reader, "%s: distances are .exr or .pfm", distances);
-    const struct cli_file files[] = {{"-o", request->output, true},
-                                     {"--ids", request->ids, true},
-                                     {"--distances", distances, true},
-                                     {"--environment", sky, false}};
-    if (!cli_check_apart(reader, files, sizeof files / sizeof *files))
-        return false;
     if (can_write(request, request->output) &&
         (!request->ids || can_write(request, request->ids)) &&
         (!distances || can_write(request, distances)))
@@ -606,7 +598,7 @@ bool render_read(struct job *job, struct cli_reader *reader, struct render_reque
     if (!read_all(job, reader, request, argc, argv) || !cameras_check(reader, job, request) ||
         !frames_check(reader, job, request) || !check_choice(reader, &job->settings, request) ||
         !refine_check(reader, job, request) || !part_check(reader, job, request) ||
-        !resume_check(reader, job, request) || !check_outputs(reader, &job->settings, request))
+        !resume_check(reader, job, request) || !check_outputs(reader, request))
         return false;
     if (request->thumbnail) {
         job->settings.picture.width = job->settings.picture.height = request->thumbnail;

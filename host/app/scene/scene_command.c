@@ -16,7 +16,7 @@ static const struct setting options[] = {
     {"triangles", 0, "FILE",
      "write every world-space triangle: little-endian records\n"
      "float v[9]; uint32 instance; uint32 primitive",
-     SETTING_AT_NAME(struct scene_request, triangles)},
+     SETTING_AT_NAME(struct scene_request, triangles), .written = true},
     {"effects", 0, NULL,
      "what each effect costs, measured on the device: times\n"
      "with and without it in turns, and what the picture\n"

@@ -182,14 +182,29 @@ static int print_json(const whit_shader *shader, const struct attempt *attempt)
     return attempt_status(attempt);
 }
 
-/* Writes `text` to a file and frees it. `text` NULL is an error, which is printed here. */
-static whit_result dump_text(const char *folder, const char *name, const char *ending, char *text)
+/* Writes FOLDER/NAMEENDING, unless the shader was read from there. */
+static whit_result dump_data(const whit_shader *shader, const char *folder, const char *name,
+                             const char *ending, const void *data, size_t bytes)
 {
     char path[4096];
+    whit_shader_info info;
+    whit_shader_get_info(shader, &info);
+    snprintf(path, sizeof path, "%s/%s%s", folder, name, ending);
+    for (uint32_t i = 0; i < info.file_count; ++i) {
+        if (cli_same_file(path, info.files[i]))
+            return CLI_FAIL(WHIT_ERROR_OUTPUT, "%s: is a file of the shader: --dump another FOLDER",
+                            path);
+    }
+    return file_write_whole(&cli_log, path, data, bytes);
+}
+
+/* Writes `text` to a file and frees it. `text` NULL is an error, which is printed here. */
+static whit_result dump_text(const whit_shader *shader, const char *folder, const char *name,
+                             const char *ending, char *text)
+{
     if (!text)
         return CLI_FAIL(WHIT_ERROR_MEMORY, "%s%s: its text cannot be had", name, ending);
-    snprintf(path, sizeof path, "%s/%s%s", folder, name, ending);
-    whit_result result = file_write_whole(&cli_log, path, text, strlen(text));
+    whit_result result = dump_data(shader, folder, name, ending, text, strlen(text));
     whit_memory_destroy(text);
     return result;
 }
@@ -197,19 +212,17 @@ static whit_result dump_text(const char *folder, const char *name, const char *e
 static whit_result dump_kernel(const whit_shader *shader, uint32_t index, const char *folder,
                                bool *more)
 {
-    char path[4096];
     const uint32_t *words;
     size_t bytes;
     const char *name = whit_shader_kernel(shader, index, &words, &bytes);
     *more = name != NULL;
     if (!name)
         return WHIT_OK;
-    snprintf(path, sizeof path, "%s/%s.spv", folder, name);
-    whit_result result = file_write_whole(&cli_log, path, words, bytes);
+    whit_result result = dump_data(shader, folder, name, ".spv", words, bytes);
     if (result == WHIT_OK)
-        result = dump_text(folder, name, ".comp", whit_shader_kernel_text(shader, index));
+        result = dump_text(shader, folder, name, ".comp", whit_shader_kernel_text(shader, index));
     if (result == WHIT_OK)
-        result = dump_text(folder, name, ".spvasm", whit_spirv_text(words, bytes));
+        result = dump_text(shader, folder, name, ".spvasm", whit_spirv_text(words, bytes));
     return result;
 }
 

@@ -33,7 +33,7 @@ static const struct setting options[] = {
     {"output", 'o', "FILE",
      "hits: little-endian records: float t (inf: miss), u, v;\n"
      "uint32 primitive (0xffffffff: miss), instance; float ng[3]",
-     SETTING_AT_NAME(struct trace, output)},
+     SETTING_AT_NAME(struct trace, output), .written = true},
     {"rays", 0, NULL, "is `--input` now", .kind = SETTING_GONE},
     {"any", 0, NULL, "any hit will do: only `primitive` says something",
      SETTING_AT_FLAG(struct trace, any)},
@@ -177,11 +177,7 @@ static bool check_request(struct cli_reader *reader, const struct job *job,
     if (trace->on != WHIT_TRACE_DEVICE && settings_given(&job->settings, "device"))
         return cli_misuse(reader, "--device: --on %s takes no device",
                           value_word(values_on, (int)trace->on));
-    const struct cli_file files[] = {{"SCENE", reader->positional, false},
-                                     {"--input", trace->rays_path, false},
-                                     {"-o", trace->output, true}};
     return cli_no_dash(reader, "--input", trace->rays_path, "for a pipe give /dev/stdin") &&
-           cli_check_apart(reader, files, sizeof files / sizeof *files) &&
            cli_check_output(reader, "-o", trace->output, "for a pipe give /dev/stdout");
 }
 

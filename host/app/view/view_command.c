@@ -37,7 +37,7 @@ static const struct setting options[] = {
     {"frames", 0, "N", "end after N pictures were shown",
      SETTING_AT_COUNT(struct view_request, view.frames), .min = 1, .max = 1e9},
     {"record", 0, "FILE", "write down what the user does",
-     SETTING_AT_NAME(struct view_request, view.record)},
+     SETTING_AT_NAME(struct view_request, view.record), .written = true},
     {"replay", 0, "FILE", "do what FILE says, and end",
      SETTING_AT_NAME(struct view_request, view.replay)},
     {"remember", 0, NULL,
