@@ -46,6 +46,38 @@ static VkDebugUtilsMessengerCreateInfoEXT messenger_info(struct device *device)
     };
 }
 
+/* Logs that `what` was not found. Where memory or file descriptors are short, that is the reason
+   given, and not `why`: a driver or layer that is installed then fails to load too. */
+static whit_result refuse(struct device *device, const char *what, const char *why,
+                          whit_result result)
+{
+    const char *lacks = whit_shortage(DRIVER_ROOM_BYTES);
+    log_error(&device->log, "%s: %s", what, lacks ? lacks : why);
+    return lacks ? WHIT_ERROR_MEMORY : result;
+}
+
+/* The Vulkan loader says that memory ran out where a driver's manifest is no JSON, and says so
+   again, while a single allocation that failed succeeds the second time. */
+static bool has_bad_manifest(VkResult vk, const char *layer)
+{
+    uint32_t count;
+    return vk == VK_ERROR_OUT_OF_HOST_MEMORY && !layer &&
+           vkEnumerateInstanceExtensionProperties(NULL, &count, NULL) == vk;
+}
+
+static whit_result refuse_manifest(struct device *device)
+{
+    static const char *const names[] = {"VK_ADD_DRIVER_FILES", "VK_ICD_FILENAMES",
+                                        "VK_DRIVER_FILES"};
+    const char *named = NULL;
+    char why[160];
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
+        named = getenv(names[i]) ? names[i] : named;
+    snprintf(why, sizeof why, "the Vulkan loader cannot read a driver's manifest%s%s%s",
+             named ? ", which " : "", named ? named : "", named ? " names" : "");
+    return refuse(device, "no usable device", why, WHIT_ERROR_NO_DEVICE);
+}
+
 /* Finds which of `names` the loader (layer NULL) or a layer offers: bit i of *found: names[i]. */
 static whit_result find_extensions(struct device *device, const char *layer,
                                    const char *const *names, uint32_t name_count, uint32_t *found)
@@ -54,7 +86,14 @@ static whit_result find_extensions(struct device *device, const char *layer,
     VkExtensionProperties *list = NULL;
     uint32_t count = 0;
     *found = 0;
-    VK_TRY(device, vkEnumerateInstanceExtensionProperties(layer, &count, NULL));
+    VkResult vk = VK_SUCCESS;
+    if (device_may_call(device, "vkEnumerateInstanceExtensionProperties", &vk))
+        vk = vkEnumerateInstanceExtensionProperties(layer, &count, NULL);
+    if (has_bad_manifest(vk, layer))
+        return refuse_manifest(device);
+    result = device_check(device, vk, "vkEnumerateInstanceExtensionProperties", __FILE__, __LINE__);
+    if (result != WHIT_OK)
+        return result;
     list = array_alloc_zeroed(count, sizeof *list);
     if (!list) {
         log_error(&device->log, "out of memory for %u Vulkan extensions", count);
@@ -68,16 +107,6 @@ static whit_result find_extensions(struct device *device, const char *layer,
 fail:
     free(list);
     return result;
-}
-
-/* Logs that `what` was not found. Where memory or file descriptors are short, that is the reason
-   given, and not `why`: a driver or layer that is installed then fails to load too. */
-static whit_result refuse(struct device *device, const char *what, const char *why,
-                          whit_result result)
-{
-    const char *lacks = whit_shortage(DRIVER_ROOM_BYTES);
-    log_error(&device->log, "%s: %s", what, lacks ? lacks : why);
-    return lacks ? WHIT_ERROR_MEMORY : result;
 }
 
 static whit_result find_validation(struct device *device)
