@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -144,18 +145,27 @@ void cache_plain_code(void)
     (void)setenv(gallivm_how, plain, 0);
 }
 
+/* Mesa maps a sparse index of 1.3 MiB in its folder, and the process ends by SIGBUS where the disk
+   has no room for a page of it. */
+static bool has_room(const char *place)
+{
+    static const uint64_t room_bytes = (uint64_t)4 << 20;
+    struct statvfs info;
+    return statvfs(place, &info) != 0 || info.f_blocks == 0 || /* it does not say */
+           (uint64_t)info.f_bavail * info.f_frsize >= room_bytes;
+}
+
 void cache_prepare(bool off)
 {
     if (off)
         (void)setenv("WHIT_NO_CACHE", "1", 1);
-    if (getenv(mesa_place) && !off)
-        return;
-    char *folder = store_folder(NULL);
+    char *folder = getenv(mesa_place) && !off ? NULL : store_folder(NULL);
     if (folder)
         choose_folder(folder);
-    else
-        (void)setenv(mesa_off, "true", 0);
     free(folder);
+    const char *place = getenv(mesa_place);
+    if (off || !place || !has_room(place))
+        (void)setenv(mesa_off, "true", 0);
 }
 
 /* ---- For `whit devices` ---- */

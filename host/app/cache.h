@@ -7,8 +7,8 @@
 
 /* Sets environment variables that make Mesa keep compiled kernels below whit's cache folder, in one
    folder for each driver version and vector width, because code of another width crashes Mesa 25.
-   Variables that are set already stay. `off`: neither libwhit nor Mesa keeps anything. Call it
-   before threads are started and before Vulkan. */
+   Variables that are set already stay. Mesa keeps nothing where its folder's disk is full. `off`:
+   neither libwhit nor Mesa keeps anything. Call it before threads are started and before Vulkan. */
 void cache_prepare(bool off);
 
 /* Tells lavapipe not to optimize the machine code of kernels, which halves the time to make them,

@@ -41,8 +41,8 @@ static bool is_off(void)
     return value && *value && strcmp(value, "0") != 0;
 }
 
-/* Makes the folder and its parent. *error: why the parent could not be made, or 0; other failures
-   show when the folder is opened. */
+/* Makes the folder and its parent. *error: why either could not be made, or 0; other failures show
+   when the folder is opened. */
 static char *make_folder(int *error)
 {
     const char *xdg = getenv("XDG_CACHE_HOME");
@@ -55,7 +55,8 @@ static char *make_folder(int *error)
     char *folder = parent ? string_format("%s/whit", parent) : NULL;
     if (folder && !is_off()) {
         *error = mkdir(parent, 0700) != 0 && errno != EEXIST ? errno : 0;
-        (void)mkdir(folder, 0700);
+        if (mkdir(folder, 0700) != 0 && errno != EEXIST && !*error)
+            *error = errno;
     }
     free(parent);
     return folder;

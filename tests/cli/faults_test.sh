@@ -108,6 +108,12 @@ if in_mounts "mount -t tmpfs -o size=16k tmpfs /mnt"; then
     check "a full disk: exit code 2, the old file and nothing else" test $? -eq 0
     check "a full disk: says so" \
         grep -q "^whit: error: /mnt/t: cannot write: No space left on device" "$OUT/stderr"
+    in_mounts "unset MESA_SHADER_CACHE_DIR; mount -t tmpfs -o size=200k tmpfs /mnt
+        head -c 300000 /dev/zero >/mnt/fill 2>/dev/null; XDG_CACHE_HOME=/mnt $WHIT devices"
+    check "a full disk for caches: Mesa keeps nothing, and whit runs" test $? -eq 0
+    in_mounts "mount -t tmpfs -o ro tmpfs /mnt; XDG_CACHE_HOME=/mnt $WHIT devices"
+    check "a read-only disk for caches: why there is none" \
+        grep -q "/mnt/whit: not used: Read-only file system$" "$OUT/stdout"
     # The current folder stays usable when another file system is mounted over /tmp.
     in_mounts "unset TMPDIR MESA_SHADER_CACHE_DIR; mount -t tmpfs -o ro tmpfs /tmp &&
         /proc/self/fd/9 render model.obj -o a.pfm $small"
@@ -116,6 +122,11 @@ if in_mounts "mount -t tmpfs -o size=16k tmpfs /mnt"; then
 else
     skip "a full disk, no /tmp: there are no mounts to be had"
 fi
+echo rubbish >rubbish.json
+VK_DRIVER_FILES=$PWD/rubbish.json refuse 3 "a driver's manifest that is none" "no usable device: .* VK_DRIVER_FILES names" \
+    devices --json
+check "there is JSON" grep -q '"devices": \[\]' "$OUT/stdout"
+rm rubbish.json
 TMPDIR=/nowhere
 export TMPDIR
 expect 0 "TMPDIR leads nowhere" scene model.obj
