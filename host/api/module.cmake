@@ -50,8 +50,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.c
 install(TARGETS whit whit_shared EXPORT whitTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 # pkg-config
-file(RELATIVE_PATH prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
-configure_file(api/cmake/whit.pc.in ${PROJECT_BINARY_DIR}/cmake/whit.pc @ONLY)
+include(api/cmake/pkgconfig.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/cmake/whit.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md
   ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/CONTRIBUTING.md

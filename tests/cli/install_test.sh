@@ -69,6 +69,23 @@ if command -v pkg-config >/dev/null && [ -z "${CFLAGS_EXTRA:-}" ]; then
     check "where Python finds it" test -s \
         "$(PKG_CONFIG_PATH=$(dirname "$library")/pkgconfig pkg-config --variable=pythondir whit)/whit.py"
 fi
+# pc DIR=PATH WHAT PATTERN: whit.pc has the line where that folder is absolute, and the others are not.
+pc() {
+    quietly "$CMAKE" -DPROJECT_BINARY_DIR="$OUT/pc" -DCMAKE_INSTALL_PREFIX=/p -DCMAKE_INSTALL_LIBDIR=lib/x \
+        -DCMAKE_INSTALL_INCLUDEDIR=include -DCMAKE_INSTALL_DATADIR=share "-DCMAKE_INSTALL_$1" \
+        -P "$SOURCE/host/api/cmake/pkgconfig.cmake"
+    shift
+    for line; do
+        check "whit.pc has $line" grep -qxF "$line" "$OUT/pc/cmake/whit.pc"
+    done
+}
+# shellcheck disable=SC2016
+{
+    pc LIBDIR=lib 'prefix=${pcfiledir}/../../' 'includedir=${prefix}/include' 'libdir=${prefix}/lib'
+    pc LIBDIR=/l 'prefix=/p' 'libdir=/l' 'includedir=${prefix}/include' 'pythondir=${prefix}/share/whit/python'
+    pc INCLUDEDIR=/i 'prefix=${pcfiledir}/../../../' 'includedir=/i' 'libdir=${prefix}/lib/x'
+    pc DATADIR=/d 'pythondir=/d/whit/python' 'libdir=${prefix}/lib/x'
+}
 check "the installed program runs" bin/whit --version
 check "a scene finds its schema" test -s share/whit/scenes/../docs/scene.schema.json
 check "a document finds scenes and shaders" test -s share/doc/whit/docs/../scenes/cube.json -a \

@@ -1,0 +1,10 @@
+# Writes ${PROJECT_BINARY_DIR}/cmake/whit.pc, whose folders move with the file unless they are absolute.
+set(pc_prefix "${CMAKE_INSTALL_PREFIX}")
+if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+  file(RELATIVE_PATH pc_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  set(pc_prefix "\${pcfiledir}/${pc_prefix}")
+endif()
+foreach(dir INCLUDEDIR LIBDIR DATADIR)
+  cmake_path(ABSOLUTE_PATH CMAKE_INSTALL_${dir} BASE_DIRECTORY "\${prefix}" OUTPUT_VARIABLE pc_${dir})
+endforeach()
+configure_file(${CMAKE_CURRENT_LIST_DIR}/whit.pc.in ${PROJECT_BINARY_DIR}/cmake/whit.pc @ONLY)
