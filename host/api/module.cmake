@@ -49,6 +49,21 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.c
   COMPATIBILITY SameMinorVersion)
 install(TARGETS whit whit_shared EXPORT whitTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+# The installed archive is one object, in which only whit_* are global: its other names may be its user's too. The
+# linkers of LLVM cannot resolve the groups of sanitized objects there.
+find_program(WHIT_GNU_LD NAMES ${CMAKE_LIBRARY_ARCHITECTURE}-ld.bfd ld.bfd REQUIRED)
+find_program(WHIT_GNU_OBJCOPY NAMES ${CMAKE_LIBRARY_ARCHITECTURE}-objcopy objcopy REQUIRED)
+install(CODE "set(archive \"${CMAKE_INSTALL_LIBDIR}/$<TARGET_FILE_NAME:whit>\")
+  cmake_path(ABSOLUTE_PATH archive BASE_DIRECTORY \"\${CMAKE_INSTALL_PREFIX}\")
+  set(archive \"\$ENV{DESTDIR}\${archive}\")
+  function(whit_run)
+    execute_process(COMMAND \${ARGV} COMMAND_ERROR_IS_FATAL ANY)
+  endfunction()
+  whit_run(\"${WHIT_GNU_LD}\" -r --force-group-allocation --whole-archive \"\${archive}\" -o \"\${archive}.o\")
+  whit_run(\"${WHIT_GNU_OBJCOPY}\" --wildcard --keep-global-symbol=whit_* \"\${archive}.o\")
+  file(REMOVE \"\${archive}\")
+  whit_run(\"${CMAKE_AR}\" qcs \"\${archive}\" \"\${archive}.o\")
+  file(REMOVE \"\${archive}.o\")")
 # pkg-config
 include(api/cmake/pkgconfig.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/cmake/whit.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -39,10 +39,12 @@ END
 check "find_package(whit COMPONENTS shared)" quietly "$CMAKE" -S "$OUT/shared" -B "$OUT/shared/build" \
     -Dwhit_DIR="$(dirname "$(find "$OUT/prefix" -name whitConfig.cmake)")"
 
-# The shared library exports whit_* and no other name, and a program is built with it by pkg-config.
+# The libraries export whit_* and no other name, and a program is built with it by pkg-config.
 library=$(find "$OUT/prefix" -name 'libwhit.so')
 nm -D --defined-only --extern-only "$library" | awk '{ print $3 }' >"$OUT/names"
 check "libwhit.so exports nothing but whit_*" test "$(grep -vc '^whit_' "$OUT/names")" -eq 0
+nm --defined-only --extern-only "$(find "$OUT/prefix" -name 'libwhit.a')" | awk '$3 { print $3 }' >"$OUT/archive"
+check "nor does libwhit.a" test -s "$OUT/archive" -a "$(grep -vc '^whit_' "$OUT/archive")" -eq 0
 # declared HEADER...: prints the functions that the headers declare.
 declared() {
     grep -ohE '\bwhit_[a-z_]+\(' "$@" | tr -d '(' | sort -u
