@@ -46,6 +46,8 @@ sed 's/"intensity": 24/"intensity": 12/' scenes/cube.json >other.json && mv othe
 expect 0 "of another scene" render plain.png --yes -o other.png
 said "which is said" "scenes/cube.json is not as it was when the picture was made"
 cp "$CUBE" scenes/
+expect 0 "of the same scene with other options" render plain.png --yes --light none --environment plain3.png -o other.png
+check "nothing is said of it" test "$(grep -c "not as it was" "$OUT/stderr")" -eq 0
 
 # ---- Asking ----
 

@@ -262,6 +262,9 @@ static bool read_over(struct recipe_read *recipe, struct job *job, struct cli_re
         return false;
     if (!names_scene)
         memcpy(job->settings.scene, scene, sizeof scene);
+    memcpy(settings.scene, job->settings.scene, sizeof settings.scene);
+    if (!settings_same_scene(&settings, &job->settings))
+        job->recipe_hash = 0; /* other options make another scene of the same file */
     if (strcmp(job->settings.shader, recipe->picture) != 0)
         job->settings.shader_said[0] = '\0';
     return true;
