@@ -45,12 +45,18 @@ static void print_values(const struct cli_command *command, const char *name)
 int describe_complete(const struct cli_command *const *commands, uint32_t count,
                       const char *const *words)
 {
+    const char *name = words[0];
+    bool known = false;
+    for (uint32_t i = 0; name && i < count; ++i)
+        known |= strcmp(commands[i]->name, name) == 0;
+    if (name && !known && file_exists(name))
+        name = "view"; /* a file in place of a command */
     for (uint32_t i = 0; i < count; ++i) {
-        if (!words[0])
+        if (!name)
             print_word(commands[i]->name, commands[i]->summary);
-        else if (strcmp(commands[i]->name, words[0]) == 0 && !words[1])
+        else if (strcmp(commands[i]->name, name) == 0 && !words[1])
             print_options(commands[i]);
-        else if (strcmp(commands[i]->name, words[0]) == 0)
+        else if (strcmp(commands[i]->name, name) == 0)
             print_values(commands[i], words[1]);
     }
     return cli_finish_stdout(EXIT_FINE);

@@ -53,6 +53,9 @@ check "files" test "$(cat "$OUT/files")" = cube.json
 check "files in place of a command" test "$(cat "$OUT/files")" = cube.json
 (cd "$SCENES" && complete_words cube.json --nu) >"$OUT/files"
 check "options of such a file" grep -qx -e --numerics -e "" "$OUT/files" # "": there is no window
+mkdir "$OUT/named" && touch "$OUT/named/bvh"
+check "a command has its options beside a file of its name" \
+    test "$(cd "$OUT/named" && complete_words bvh --ru)" = --runs
 check "words that begin like options" test "$(complete_words render --up -z)" = -z
 check "the form without a command has its line" grep -q "^FILE .options.$" "$OUT/man/whit.1"
 check "an about behind each word" test -z "$("$WHIT" --complete | grep -v "$tab.")"

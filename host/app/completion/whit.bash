@@ -5,7 +5,6 @@ _whit() {
     if [ "$COMP_CWORD" -eq 1 ]; then
         words="$("$1" --complete 2>/dev/null | cut -f 1) --help --version"
     else
-        [ ! -f "$command" ] || command=view # a file in place of a command
         [ "${previous#--}" = "$previous" ] ||
             words=$("$1" --complete "$command" "$previous" 2>/dev/null | cut -f 1)
         [ -n "$words" ] || [ "${current#-}" = "$current" ] ||
