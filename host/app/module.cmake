@@ -46,8 +46,7 @@ target_include_directories(whit_program_needs INTERFACE
   ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/base)
 if(WHIT_VIEWER)
   target_sources(whit_program PRIVATE app/view/state_file.c app/view/view_command.c)
-  target_compile_definitions(whit_program_needs INTERFACE WHIT_VIEWER
-    WHIT_SCENES_DIR="${PROJECT_SOURCE_DIR}/scenes")
+  target_compile_definitions(whit_program_needs INTERFACE WHIT_VIEWER)
   # These come before the library in the link order, because they call its modules.
   target_link_libraries(whit_program_needs INTERFACE $<TARGET_OBJECTS:whit_view> glfw
     PkgConfig::IMGUI PkgConfig::FONTCONFIG stdc++)

@@ -88,6 +88,11 @@ pc() {
     pc INCLUDEDIR=/i 'prefix=${pcfiledir}/../../../' 'includedir=/i' 'libdir=${prefix}/lib/x'
     pc DATADIR=/d 'pythondir=/d/whit/python' 'libdir=${prefix}/lib/x'
 }
+# Debuggers and sanitizers are told where sources are.
+if grep -q "^CMAKE_BUILD_TYPE:.*=Release$" "$BUILD/CMakeCache.txt" && ! grep -q "^WHIT_SANITIZE:.*=ON$" "$BUILD/CMakeCache.txt"; then
+    check "no file names the folder of its sources" \
+        test -z "$(find . -type f -exec grep -lF "$(cd "$SOURCE" && pwd)/" {} +)"
+fi
 check "the installed program runs" bin/whit --version
 check "a scene finds its schema" test -s share/whit/scenes/../docs/scene.schema.json
 check "a document finds scenes and shaders" test -s share/doc/whit/docs/../scenes/cube.json -a \

@@ -117,10 +117,11 @@ static whit_result save_shot(void *user, const struct view_shot *shot, const cha
 
 /* ---- The command ---- */
 
-/* Finds the scene that opens when none is given: installed beside the program, or in the source
-   folder that it was built from. */
+/* Finds the scene that opens when none is given: installed beside the program, or in the checkout
+   that its build folder lies in. */
 static const char *find_start(char *path, size_t bytes)
 {
+    static const char *const places[] = {"../share/whit/scenes", "../scenes", "../../scenes"};
     char own[SETTING_PATH_BYTES];
     ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
     char *slash = NULL;
@@ -128,14 +129,12 @@ static const char *find_start(char *path, size_t bytes)
         own[length] = '\0';
         slash = strrchr(own, '/');
     }
-    if (slash) {
-        *slash = '\0';
-        snprintf(path, bytes, "%.900s/../share/whit/scenes/default.json", own);
+    for (size_t i = 0; slash && i < sizeof places / sizeof *places; ++i) {
+        snprintf(path, bytes, "%.*s/%s/default.json", (int)(slash - own), own, places[i]);
         if (access(path, R_OK) == 0)
             return path;
     }
-    snprintf(path, bytes, "%s/default.json", WHIT_SCENES_DIR);
-    return access(path, R_OK) == 0 ? path : NULL;
+    return NULL;
 }
 
 static int work(struct job *job, struct view_params *view)
