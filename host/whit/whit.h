@@ -1,6 +1,6 @@
 /* libwhit: a Whitted ray tracer on Vulkan compute. This header is the whole public face; its
    parts are in the headers that it includes. See tests/example/example.c for a program that uses
-   nothing else.
+   nothing else. C11 or C++11 is needed, or a later one.
 
    Scenes come from files (whit's own in JSON, glTF, OBJ and other models, see whit_scene_load), not
    from arrays in memory. They do not change once they are loaded; what renderers choose is the time
