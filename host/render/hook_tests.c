@@ -40,7 +40,7 @@ static whit_result dispatch(struct renderer *renderer, const struct pass *pass, 
     result = commands_submit(commands);
     if (result == WHIT_OK)
         result = commands_wait(commands, -1.0);
-    return result == WHIT_OK ? status_check(&renderer->picture) : result;
+    return result == WHIT_OK ? status_check(&renderer->picture, false) : result;
 }
 
 /* `rows`: one for each seed, of the word that has the check's bit. */

@@ -48,7 +48,7 @@ static void describe_non_finite(const struct target *target, char *text, size_t 
     hooks_describe_file(target->renderer, text, text_bytes);
 }
 
-whit_result status_check(struct target *target)
+whit_result status_check(struct target *target, bool traces)
 {
     uint32_t word = 0;
     whit_result result = buffer_read(target->buffers.status, 0, &word, sizeof word);
@@ -60,7 +60,9 @@ whit_result status_check(struct target *target)
         uint32_t bit;
         const char *text;
     } reasons[] = {
-        {STATUS_UNFINISHED_TRAVERSAL, "a traversal was cut short (the driver ends long loops)"},
+        {STATUS_UNFINISHED_TRAVERSAL,
+         traces ? "a traversal was cut short (the driver ends long loops; --on cpu ends none)"
+                : "a traversal was cut short (the driver ends long loops)"},
         {STATUS_NODE_STACK_OVERFLOW, "the node stack overflowed"},
         {STATUS_NON_FINITE, "radiance is not finite"},
         {STATUS_MEDIUM_STACK_OVERFLOW, "a ray was in more media at once than its stack holds"},
@@ -160,7 +162,7 @@ static whit_result submit(struct target *target)
         else
             target->stats.render_device_ms += device_ms;
     } while (++span < commands_span_count(renderer->commands));
-    return status_check(target);
+    return status_check(target, false);
 }
 
 void render_clear_deferred(struct renderer *renderer, struct buffer *deferred)

@@ -52,7 +52,8 @@ WHIT_CHECK whit_result deferred_clear(struct target *target);
 WHIT_CHECK whit_result deferred_read(const struct target *target, uint32_t *count);
 
 /* Reads the status word, and logs what its bits mean. WHIT_OK if none is set, or STATUS_QUEUE_FULL
-   alone, which goes into target->stages.full. */
-WHIT_CHECK whit_result status_check(struct target *target);
+   alone, which goes into target->stages.full. `traces`: rays of a caller, which the CPU traces too.
+ */
+WHIT_CHECK whit_result status_check(struct target *target, bool traces);
 
 #endif

@@ -120,7 +120,7 @@ static whit_result dispatch(struct renderer *renderer, bool any, bool beams,
         result = commands_wait(renderer->commands, -1.0);
     if (result == WHIT_OK)
         renderer->trace.device_ms += commands_span_ms(renderer->commands, 0);
-    return result == WHIT_OK ? status_check(&renderer->picture) : result;
+    return result == WHIT_OK ? status_check(&renderer->picture, true) : result;
 }
 
 static whit_result cancelled(const struct renderer *renderer)

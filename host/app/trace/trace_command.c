@@ -81,12 +81,6 @@ static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
         result = whit_trace(renderer, (whit_trace_on)trace->on, trace->rays, count, trace->any,
                             trace->hits, NULL);
         trace->trace_ms += whit_clock_ms() - start_ms;
-        if (result == WHIT_ERROR_STATUS)
-            cli_note(
-                "it was one of the rays %llu to %llu of %s; `--on cpu` gives the same hits, and "
-                "has no such limit",
-                (unsigned long long)trace->done_count,
-                (unsigned long long)(trace->done_count + count - 1), trace->rays_path);
         if (result == WHIT_OK)
             result =
                 file_write_append(&cli_log, &trace->file, trace->hits, count * sizeof(whit_hit));
