@@ -84,25 +84,36 @@ static struct pipeline *take_oldest(struct device *device)
     return gone;
 }
 
+static void destroy_all(struct pipeline *list)
+{
+    while (list) {
+        struct pipeline *pipeline = list;
+        list = pipeline->next;
+        pipeline->kept = false;
+        pipeline_destroy(pipeline);
+    }
+}
+
 void kept_add(struct pipeline *pipeline, const struct pipeline_params *params, bool specializes)
 {
     struct device *device = pipeline->device;
-    struct pipeline *gone = NULL;
+    struct pipeline *oldest, *gone = NULL;
     if (!device->keeps)
         return;
     key_of(params, specializes, pipeline->key);
     pthread_mutex_lock(&device->kept_lock);
-    if (device->kept_count == KEPT_MAX)
-        gone = take_oldest(device);
+    /* There are more than KEPT_MAX if that many had users at the same time. */
+    while (device->kept_count >= KEPT_MAX && (oldest = take_oldest(device))) {
+        oldest->next = gone;
+        gone = oldest;
+    }
     pipeline->kept = true;
     pipeline->users = 1;
     pipeline->next = device->kept;
     device->kept = pipeline;
     ++device->kept_count;
     pthread_mutex_unlock(&device->kept_lock);
-    if (gone)
-        gone->kept = false;
-    pipeline_destroy(gone);
+    destroy_all(gone);
 }
 
 bool kept_give_back(struct pipeline *pipeline)
@@ -117,10 +128,6 @@ bool kept_give_back(struct pipeline *pipeline)
 
 void kept_finish(struct device *device)
 {
-    while (device->kept) {
-        struct pipeline *pipeline = device->kept;
-        device->kept = pipeline->next;
-        pipeline->kept = false;
-        pipeline_destroy(pipeline);
-    }
+    destroy_all(device->kept);
+    device->kept = NULL;
 }

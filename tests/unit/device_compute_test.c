@@ -403,7 +403,7 @@ TEST(a_device_that_keeps_pipelines_makes_each_once)
     struct device *keeper = device_open(&said, true);
     const uint32_t spec[] = {64, 3, 7}, copy[] = {64, 3, 7};
     const struct pipeline_params params = affine_params(spec), same = affine_params(copy);
-    struct pipeline *held, *again;
+    struct pipeline *held, *again, *used[MANY];
     device_keep_pipelines(keeper);
     assert_int_equal(pipeline_create(keeper, &params, &held), WHIT_OK);
     assert_int_equal(pipeline_create(keeper, &same, &again), WHIT_OK);
@@ -425,8 +425,19 @@ TEST(a_device_that_keeps_pipelines_makes_each_once)
         assert_ptr_equal(held, again); /* of the same code */
         pipeline_destroy(again);
     }
+    for (uint32_t i = 0; i < MANY; ++i) {
+        const uint32_t values[] = {64, 100 + i, 7};
+        const struct pipeline_params another = affine_params(values);
+        assert_int_equal(pipeline_create(keeper, &another, &used[i]), WHIT_OK);
+    }
     for (uint32_t i = 0; i < MANY; ++i)
-        make_and_drop(keeper, 100 + i);
+        pipeline_destroy(used[i]);
+    make_and_drop(keeper, 100 + MANY);
+    uint64_t made = device_pipelines_made(keeper);
+    make_and_drop(keeper, 99 + MANY);
+    assert_int_equal(device_pipelines_made(keeper), made);
+    make_and_drop(keeper, 100); /* is not kept any more */
+    assert_int_equal(device_pipelines_made(keeper), made + 1);
     assert_int_equal(pipeline_create(keeper, &params, &again), WHIT_OK);
     assert_ptr_equal(held, again); /* the oldest of all, and used */
     pipeline_destroy(held);
