@@ -450,8 +450,8 @@ whit_result whit_renderer_draw_over(whit_renderer *renderer, const whit_overlay 
 {
     whit_result result = api_need_device(renderer);
     bool any = overlay->grid || overlay->edges_of_instances || overlay->edges_of_primitives;
-    bool whole = !renderer->params.row_count && !renderer_view_count(renderer->renderer);
-    if (result == WHIT_OK && any && !whole) {
+    if (result == WHIT_OK && any &&
+        (renderer->params.row_count || renderer_view_count(renderer->renderer))) {
         log_error(&renderer->log, "grid and edges are drawn over whole pictures");
         result = WHIT_ERROR_USAGE;
     }

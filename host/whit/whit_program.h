@@ -56,8 +56,8 @@ typedef struct whit_overlay {
     const uint32_t *ids; /* hit identities between which edges are drawn, two words a pixel,
                             borrowed; NULL: those of the picture that the renderer has just drawn */
 } whit_overlay;
-/* Draws over `color`, a picture of the renderer's view. WHIT_ERROR_USAGE where nothing
-   was rendered, WHIT_ERROR_DEVICE, WHIT_ERROR_MEMORY, WHIT_ERROR_CANCELLED. */
+/* Draws over `color`, a picture of the renderer's view. WHIT_ERROR_USAGE without a device and where
+   nothing was rendered, WHIT_ERROR_DEVICE, WHIT_ERROR_MEMORY, WHIT_ERROR_CANCELLED. */
 WHIT_CHECK whit_result whit_renderer_draw_over(whit_renderer *renderer, const whit_overlay *overlay,
                                                whit_image *color);
 

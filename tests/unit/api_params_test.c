@@ -101,6 +101,19 @@ TEST_IN(rays_are_traced_in_one_of_the_ways_that_there_are, begin, device_end)
     assert_non_null(strstr(messages.last_error, "not on 9"));
 }
 
+TEST_IN(without_a_device_nothing_is_drawn_over, begin, device_end)
+{
+    const float light[4] = {0};
+    const whit_overlay overlay = {.grid = true};
+    const whit_renderer_params params = small();
+    own_whit_renderer *renderer = NULL;
+    own_whit_image *image = NULL;
+    assert_int_equal(whit_renderer_create(NULL, accel, &params, &renderer), WHIT_OK);
+    assert_int_equal(whit_image_create(1, 1, 4, light, &image), WHIT_OK);
+    assert_int_equal(whit_renderer_draw_over(renderer, &overlay, image), WHIT_ERROR_USAGE);
+    assert_non_null(strstr(messages.last_error, "made without a device"));
+}
+
 TEST(limits_of_importers_are_not_below_0)
 {
     const whit_load_params bad[] = {{.import_limit_s = NAN},
