@@ -172,7 +172,7 @@ static bool both_have(const struct stages_job *a, const struct stages_job *b, en
 }
 
 /* Drops from `job` the kernels that are the same as in `was`. */
-static void drop_same(const struct stages_job *was, bool same, struct stages_job *job)
+static void drop_same(const struct stages_job *was, struct stages_job *job)
 {
     /* These stages have functions of the user's file. A change of one function may renumber the
        SPIR-V ids in the kernels of the others. */
@@ -182,8 +182,8 @@ static void drop_same(const struct stages_job *was, bool same, struct stages_job
         bool closely = false;
         for (size_t k = 0; k < sizeof own / sizeof *own; ++k)
             closely = closely || ((int)own[k] != i && both_have(was, job, own[k]));
-        job->wanted[i] = job->wanted[i] && (!same || !was->wanted[i] ||
-                                            is_other(&was->stages[i], &job->stages[i], closely));
+        job->wanted[i] = job->wanted[i] &&
+                         (!was->wanted[i] || is_other(&was->stages[i], &job->stages[i], closely));
     }
 }
 
@@ -219,28 +219,24 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     renderer->params.shader = shader;
     spec = variant_spec(target);
     stages_job_init(target, &spec, true, few, &job);
-    bool same = was.classes == job.classes && memcmp(was.of, job.of, sizeof job.of) == 0;
-    drop_same(&was, same, &job);
+    drop_same(&was, &job);
     put_off_hits(variant_splits_hits(target), set, &job);
     for (int i = 0; i < STAGE_COUNT; ++i)
         renderer->kept.known &= !job.wanted[i] || i == STAGE_AOV || i == STAGE_POST;
     renderer->kept.aovs &= !job.wanted[STAGE_AOV];
     whit_result result = stages_job_run(renderer->device, &job, &made);
-    if (result != WHIT_OK || !same)
+    if (result != WHIT_OK) {
         stage_set_finish(set);
-    if (result != WHIT_OK)
         return result;
+    }
     stages_unbind(&target->stages);
     for (int i = 0; i < STAGE_COUNT; ++i) {
-        if (job.wanted[i] || !same) {
+        if (job.wanted[i])
             pass_finish(&set->passes[i]);
-            set->passes[i] = made.passes[i];
-        }
+        else
+            made.passes[i] = set->passes[i];
     }
-    set->classes = made.classes;
-    set->hit_rows = made.hit_rows;
-    memcpy(set->of, made.of, sizeof set->of);
-    memcpy(set->calls, made.calls, sizeof set->calls);
+    *set = made;
     count_instructions(target);
     return WHIT_OK;
 }
