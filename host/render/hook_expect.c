@@ -146,6 +146,7 @@ static whit_result draw_base(struct pair *pair)
     params.sliders = NULL;
     params.progress = NULL;
     params.step = NULL;
+    params.step_aov = 0;
     whit_result result =
         renderer_create(&pair->own->log, pair->own->device, pair->own->accel, &params, &pair->base);
     return result == WHIT_OK ? renderer_render(pair->base) : result;

@@ -349,11 +349,13 @@ TEST_BY_TURNS(another_post_behind_a_cancelled_picture_needs_no_rays, 1, 2)
 }
 
 /* The picture without the shader, with which expectations compare, has shadow rays although the
-   shader asks for none. */
+   shader asks for none, and no steps of an aov. */
 TEST_BY_TURNS(expectations_are_held_against_all_effects, 1, 2)
 {
-    own_whit_shader *shader = hooks_load("//@ expect rays.shadow == base\n" SHADE "s.ns; }\n");
+    own_whit_shader *shader =
+        hooks_load("//@ expect rays.shadow == base\n" AOV("one") SHADE "s.ns; }\n");
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
+    params.step_aov = 1;
     bool held;
     own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
