@@ -127,15 +127,18 @@ whit_result hooks_check_step_aov(const struct renderer *renderer, uint32_t step_
 whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders)
 {
     char why[512];
+    float values[SLIDERS_MAX]; /* those of the renderer stay after an error */
     if (!renderer->params.shader && (!sliders || !sliders[0] || renderer->params.skip_sliders))
         return WHIT_OK;
     if (!renderer->params.shader) {
         log_error(&renderer->log, "sliders are set, and there is no shader that has any");
         return WHIT_ERROR_USAGE;
     }
-    if (shader_sliders_read(renderer->params.shader, sliders, renderer->params.skip_sliders,
-                            renderer->sliders, why, sizeof why))
+    if (shader_sliders_read(renderer->params.shader, sliders, renderer->params.skip_sliders, values,
+                            why, sizeof why)) {
+        memcpy(renderer->sliders, values, sizeof values);
         return WHIT_OK;
+    }
     log_error(&renderer->log, "%s", why);
     return WHIT_ERROR_USAGE;
 }
@@ -160,18 +163,29 @@ whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_p
 {
     const whit_shader *before = renderer->params.shader;
     uint32_t aovs = hooks_aov_count(&renderer->probe);
-    renderer->params.shader = params->shader;
-    renderer->params.few_pixels = params->few_pixels;
-    renderer->portable.shader = params->shader;
+    const struct gpu_frame frame = renderer->frame;
+    float sliders[SLIDERS_MAX];
+    memcpy(sliders, renderer->sliders, sizeof sliders);
+    renderer->params.shader = renderer->portable.shader = params->shader;
+    whit_result result = hooks_find_material(renderer);
+    if (result == WHIT_OK)
+        result = renderer_set_view(renderer, params);
+    if (result == WHIT_OK) {
+        result = stages_replace(&renderer->picture, before);
+        renderer->between_times = result != WHIT_OK; /* the device has the new shader's sliders */
+    }
+    if (result != WHIT_OK) {
+        renderer->params.shader = renderer->portable.shader = before;
+        renderer->frame.shape_material = frame.shape_material;
+        renderer->frame.shape_error = frame.shape_error;
+        memcpy(renderer->sliders, sliders, sizeof sliders);
+        return result;
+    }
     stage_set_finish(&renderer->probe.stages.set);
     if (hooks_aov_count(&renderer->probe) != aovs)
         target_drop_pixels(&renderer->probe);
-    whit_result result = hooks_find_material(renderer);
-    if (result == WHIT_OK)
-        hooks_warn_material(renderer);
-    if (result == WHIT_OK)
-        result = stages_replace(&renderer->picture, before);
-    return result == WHIT_OK ? renderer_set_view(renderer, params) : result;
+    hooks_warn_material(renderer);
+    return WHIT_OK;
 }
 
 void hooks_warn_material(const struct renderer *renderer)

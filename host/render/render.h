@@ -118,7 +118,8 @@ WHIT_CHECK whit_result renderer_set_view(struct renderer *renderer,
    kernels anew. */
 bool renderer_takes_shader(const struct renderer *renderer, const whit_shader *shader);
 /* Replaces the renderer's shader by params->shader, for which renderer_takes_shader is true; the
-   old one may be freed afterwards. Otherwise as renderer_set_view. */
+   old one may be freed afterwards. Otherwise as renderer_set_view. After an error the renderer
+   keeps the old one. */
 WHIT_CHECK whit_result renderer_set_shader(struct renderer *renderer,
                                            const whit_renderer_params *params);
 

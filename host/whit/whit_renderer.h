@@ -226,7 +226,8 @@ WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
 bool whit_renderer_takes_shader(const whit_renderer *renderer, const whit_shader *shader);
 /* As whit_renderer_set_view, and takes params->shader, another version of the renderer's shader.
    Only its kernels are made anew; the version before may be destroyed afterwards. WHIT_ERROR_USAGE,
-   logged, where whit_renderer_takes_shader is false. */
+   logged, where whit_renderer_takes_shader is false. After an error the renderer keeps the version
+   before, and params->shader may be destroyed. */
 WHIT_CHECK whit_result whit_renderer_set_shader(whit_renderer *renderer,
                                                 const whit_renderer_params *params);
 

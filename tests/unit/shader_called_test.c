@@ -239,6 +239,37 @@ TEST(a_version_in_place_draws_the_same)
     draw_versions(versions, traces, sizeof versions / sizeof *versions);
 }
 
+/* After an error the renderer draws with the version that it had, and its sliders. */
+TEST(a_refused_version_leaves_the_one_before)
+{
+    static const char *const text = SLIDER("0.25") SHADE "s.ns * k; }\n" POST("c");
+    own_whit_shader *first = hooks_load(text);
+    whit_shader *refused = hooks_load(SLIDER("0.5") SHADE "s.ng * k; }\n" POST("c.bgr"));
+    const whit_renderer_params params = params_sized(WIDTH, HEIGHT, first);
+    whit_renderer_params wrong = params;
+    own_whit_renderer *renderer = renderer_of(&params);
+    own_whit_image *drawn = drawn_by(renderer);
+    wrong.shader = refused;
+    wrong.exposure_ev = INFINITY;
+    assert_int_equal(whit_renderer_set_shader(renderer, &wrong), WHIT_ERROR_USAGE);
+    own_whit_image *again = image_of(renderer, WHIT_AOV_COLOR);
+    assert_same_image(drawn, again);
+    wrong.exposure_ev = params.exposure_ev;
+    wrong.sliders = "k=1,l=1";
+    assert_int_equal(whit_renderer_set_shader(renderer, &wrong), WHIT_ERROR_USAGE);
+    assert_int_equal(whit_renderer_set_view(renderer, &wrong), WHIT_ERROR_USAGE);
+    assert_int_equal(whit_renderer_set_time(renderer, 1.0), WHIT_OK);
+    own_whit_image *later = drawn_by(renderer);
+    assert_same_image(drawn, later);
+    wrong.sliders = NULL;
+    wrong.camera.name = "none of the scene";
+    assert_int_equal(whit_renderer_set_shader(renderer, &wrong), WHIT_ERROR_USAGE);
+    whit_shader_destroy(refused);
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
+    own_whit_image *last = drawn_by(renderer);
+    assert_same_image(drawn, last);
+}
+
 /* If only the body of post() has changed, no ray is traced. */
 TEST_BY_TURNS(another_post_needs_no_rays, 0, 2)
 {

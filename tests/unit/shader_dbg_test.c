@@ -174,6 +174,11 @@ TEST(another_view_and_another_version_are_followed)
     assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
     assert_calls(renderer, 9);
     params.shader = plain;
+    params.camera.name = "none of the scene";
+    assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_ERROR_USAGE);
+    params.camera.name = NULL;
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
+    assert_calls(renderer, 9);
     assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
     assert_calls(renderer, 0);
 }
