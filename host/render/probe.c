@@ -361,9 +361,10 @@ static whit_result check(const struct renderer *renderer, uint32_t x, uint32_t y
 {
     const whit_renderer_params *params = &renderer->params;
     if (x < params->width && y < params->height) {
-        if (!renderer->between_times)
+        if (!renderer->between_times && !renderer->between_views)
             return WHIT_OK;
-        log_error(&renderer->log, "its time could not be set, so there is nothing to probe");
+        log_error(&renderer->log,
+                  "its time or view could not be set, so there is nothing to probe");
         return WHIT_ERROR_USAGE;
     }
     log_error(&renderer->log,

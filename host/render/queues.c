@@ -146,6 +146,7 @@ whit_result queues_grow(struct target *target)
     queues_finish(&p->queues);
     whit_result result = queues_create(target);
     p->bytes += p->queues.bytes;
+    target->renderer->picture.stats.device_bytes = target->renderer->scene_buffers.bytes;
     return result;
 }
 

@@ -110,8 +110,9 @@ WHIT_CHECK whit_result renderer_set_time(struct renderer *renderer, double time_
 /* Takes over width, height, camera, time_s, samples, adaptive, light_samples, bailout and depth of
    `params`, and nothing else. Buffers that fit are kept. Kernels are kept too, except for a camera
    of another kind, adaptive on or off, depth to or from 0, and without trees. The name of its
-   camera is borrowed until the next call. The picture is that of a renderer made with these, byte
-   for byte. After an error nothing can be rendered until a call succeeds. */
+   camera is borrowed until the next call that succeeds. The picture is that of a renderer made with
+   these, byte for byte. Params out of range, and a camera that is refused while time_s stays,
+   change nothing; after other errors nothing can be rendered until a call succeeds. */
 WHIT_CHECK whit_result renderer_set_view(struct renderer *renderer,
                                          const whit_renderer_params *params);
 /* Whether the renderer can draw with `shader`, another version of its own, if it only makes some

@@ -248,7 +248,8 @@ struct renderer {
     uint32_t node_stack_size, packet_stack_size;
     bool single_identity;
     bool has_secondary; /* surfaces send rays on: renderer_bounces */
-    bool between_times; /* a change of time or view failed halfway: no picture can be drawn */
+    /* A change of time, or of view, failed halfway: no picture can be drawn. */
+    bool between_times, between_views;
     bool rendered;
 };
 

@@ -1,5 +1,6 @@
 /* Points an existing renderer at another picture: size, camera, time, samples, limits. */
 #include "render/retarget.h"
+#include "picture/camera.h"
 #include "render/async.h"
 #include "render/frame_uniform.h"
 #include "render/hooks.h"
@@ -51,18 +52,31 @@ whit_result retarget_pixels(struct renderer *renderer)
     return result;
 }
 
+/* Refuses a camera before anything is changed. */
+static whit_result check_camera(const struct renderer *renderer, const whit_renderer_params *params)
+{
+    struct gpu_frame frame;
+    uint32_t kind;
+    return camera_frame(&renderer->log, &renderer->pose, &params->camera, params->width,
+                        params->height, &frame, &kind);
+}
+
 whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_params *params)
 {
     whit_renderer_params wanted = merge(&renderer->params, params);
     whit_result result = params_check(&renderer->log, &wanted);
     if (result == WHIT_OK)
         result = hooks_check_step_aov(renderer, wanted.step_aov);
+    /* What an earlier change left half done is done again, whatever the parameters say. */
+    bool redo = renderer->between_times || renderer->between_views;
+    bool moved = redo || wanted.time_s != renderer->params.time_s;
+    if (result == WHIT_OK && !moved)
+        result = check_camera(renderer, &wanted);
     if (result == WHIT_OK)
         result = hooks_read_sliders(renderer, params->sliders);
     if (result != WHIT_OK)
         return result;
     bool many = renderer->views.count > 0;
-    bool moved = wanted.time_s != renderer->params.time_s;
     bool same = !many && same_buffers(&renderer->params, &wanted) &&
                 renderer->picture.buffers.pixels &&
                 pixels_levels(&wanted) <= renderer->picture.buffers.levels;
@@ -83,7 +97,7 @@ whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_par
     else if (result == WHIT_OK)
         result = frame_upload(renderer);
     bool other_kernel =
-        many || variant_camera(renderer) != camera ||
+        redo || many || variant_camera(renderer) != camera ||
         (wanted.sampling.kind == WHIT_SAMPLING_ADAPTIVE) != listed ||
         renderer->has_secondary != had_secondary ||
         media_touch(renderer->scene, &renderer->bodies, &renderer->frame) != touched;
@@ -91,6 +105,6 @@ whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_par
         async_finish(renderer);
         passes_finish(renderer);
     }
-    renderer->between_times = result != WHIT_OK;
+    renderer->between_views = result != WHIT_OK;
     return result;
 }

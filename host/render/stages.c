@@ -11,6 +11,7 @@
 #include "device/commands.h"
 #include "render/costs.h"
 #include "render/hooks.h"
+#include "render/pixels.h"
 #include "render/queues.h"
 #include "render/stage_set.h"
 #include "render/stage_times.h"
@@ -388,7 +389,10 @@ whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
         stages_unbind(&target->stages);
         if (result == WHIT_OK)
             result = stages_bind(target);
-        return result == WHIT_OK ? stages_sample(target, chunk, progress, longest_ms) : result;
+        if (result == WHIT_OK)
+            return stages_sample(target, chunk, progress, longest_ms);
+        target_drop_pixels(target); /* queues are missing: the next picture makes all anew */
+        return result;
     }
     if (chunk->block_count == 1) {
         log_error(&target->renderer->log,

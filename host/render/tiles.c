@@ -19,6 +19,7 @@
 #include "render/pixels.h"
 #include "render/readback.h"
 #include "render/renderer.h"
+#include "render/retarget.h"
 #include "render/reuse.h"
 #include "render/stages.h"
 #include "render/stats.h"
@@ -468,7 +469,7 @@ static whit_result make_images(struct renderer *renderer)
 whit_result render_all(struct renderer *renderer)
 {
     renderer->rendered = false;
-    if (renderer->between_times) {
+    if (renderer->between_times || renderer->between_views) {
         log_error(&renderer->log,
                   "its time or view could not be set, so there is nothing to render");
         return WHIT_ERROR_USAGE;
@@ -480,6 +481,8 @@ whit_result render_all(struct renderer *renderer)
     image_finish(&renderer->distances);
     costs_clear(renderer);
     whit_result result = params_check_loops(renderer);
+    if (result == WHIT_OK && !renderer->picture.buffers.pixels) /* dropped after an error */
+        result = retarget_pixels(renderer);
     if (result == WHIT_OK)
         result = renderer_compile(renderer);
     if (result == WHIT_OK && reuse_is_possible(renderer))

@@ -69,7 +69,7 @@ static whit_result check(const struct renderer *renderer, uint32_t count)
         return refuse(renderer, "costs that are counted");
     if (params->shader)
         return refuse(renderer, "functions of a shader");
-    if (renderer->between_times)
+    if (renderer->between_times || renderer->between_views)
         return refuse(renderer, "a time or size that could not be set");
     if (count > 0 && rows <= INT32_MAX &&
         rows / 8 * pixels_blocks_across(params->width) <= UINT32_MAX)

@@ -80,6 +80,9 @@ TEST_IN(a_view_out_of_range_leaves_the_picture, begin, device_end)
     params = small();
     params.step_aov = 1;
     assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_ERROR_USAGE);
+    params = small();
+    params.camera.name = "nobody";
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_ERROR_USAGE);
     assert_int_equal(whit_renderer_render_views(renderer, NULL, 0), WHIT_ERROR_USAGE);
     assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_OK);
     whit_image_destroy(image);

@@ -1,10 +1,21 @@
 /* A renderer draws several views in turn: each picture is, byte for byte, that of a renderer made
    for it. */
+#include "../wrapped.h"
+#include "device/buffer.h"
 #include "render/renderer.h"
 #include "render_scenes.h"
 #include "unit.h"
 
 #define ASIDE CAMERA_AT(3, 2.5, 4, 0, 0.6, 0, 0, 1, 0, 35)
+
+/* Whether the device has no memory for buffers of pixels and queues. */
+static bool no_room;
+
+WRAPPED(whit_result, buffer_create_all, struct device *device, const struct buffer_request *all,
+        size_t count, uint64_t *bytes)
+{
+    return no_room ? WHIT_ERROR_MEMORY : __real_buffer_create_all(device, all, count, bytes);
+}
 
 /* Every step changes something else: size, samples, camera, limits, and back. */
 static const whit_renderer_params steps[] = {
@@ -95,12 +106,45 @@ TEST(nonsense_is_refused)
     whit_renderer_params wrong = steps[0];
     wrong.camera = (whit_camera){.name = "no such camera"};
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
+    check_same(&f, "after a wrong camera", &steps[0]);
+    wrong.time_s = 0.7;
+    assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_USAGE);
     wrong = steps[0];
     wrong.sampling.count = 4097;
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_set_view(f.renderer, &steps[1]), WHIT_OK);
     check_same(&f, "after nonsense", &steps[1]);
+}
+
+/* Nothing of what a failed call has already changed may be missing from the next one, even if that
+   asks for the same view. */
+TEST(a_view_that_failed_is_set_as_a_whole)
+{
+    const whit_renderer_params *before = &steps[5], *view = &steps[8];
+    own_fixture f = fixture_open(file_scene("spin"), NULL, before);
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+    for (int moves = 0; moves < 2; ++moves) {
+        no_room = true;
+        assert_int_equal(renderer_set_view(f.renderer, moves ? before : view), WHIT_ERROR_MEMORY);
+        no_room = false;
+        if (moves)
+            assert_int_equal(renderer_set_time(f.renderer, view->time_s), WHIT_OK);
+        assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_USAGE);
+        assert_int_equal(renderer_set_view(f.renderer, view), WHIT_OK);
+        check_same(&f, "after an error", view);
+    }
+}
+
+/* The rays of one block need larger queues, for which there is no memory in the first picture. */
+TEST(queues_that_could_not_grow_are_made_anew)
+{
+    const whit_renderer_params params = {.width = 32, .height = 24, .depth = 12, .tile_size = 16};
+    own_fixture f = fixture_open(file_scene("whitted"), NULL, &params);
+    no_room = true;
+    assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_MEMORY);
+    no_room = false;
+    check_same(&f, "after queues", &params);
 }
 
 /* Whether a renderer uses few kernels follows from the picture for which it was made, and a larger
