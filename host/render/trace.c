@@ -144,9 +144,11 @@ static whit_result trace_piece(struct renderer *renderer, bool any, bool *beams,
     struct gpu_work alone;
     if (result == WHIT_OK)
         result = buffer_read(renderer->trace.deferred, 0, &alone, sizeof alone);
-    *beams = result == WHIT_OK && alone.count < count / 2;
+    if (result != WHIT_OK)
+        return result;
+    *beams = alone.count < count / 2;
     renderer->trace.together += alone.count < count ? count - alone.count : 0;
-    return result;
+    return WHIT_OK;
 }
 
 static whit_result read_hits(const struct renderer *renderer, bool any, uint64_t count,

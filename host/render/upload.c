@@ -78,12 +78,13 @@ static whit_result store_words(struct renderer *renderer, const void *data, uint
             passes_finish(renderer);
         buffer_destroy(*buffer);
         *buffer = NULL;
+        renderer->scene_buffers.bytes -= held_bytes;
         uint64_t spare_bytes = held_bytes ? size_bytes / 8 : 0;
         whit_result result =
             buffer_create(renderer->device, size_bytes + spare_bytes, uses, name, buffer);
         if (result != WHIT_OK)
             return result;
-        renderer->scene_buffers.bytes += buffer_size(*buffer) - held_bytes;
+        renderer->scene_buffers.bytes += buffer_size(*buffer);
     }
     return buffer_write(*buffer, 0, data, size_bytes);
 }
@@ -386,7 +387,9 @@ whit_result upload_wide(struct renderer *renderer)
     if (renderer->wide)
         return WHIT_OK;
     renderer->wide = true;
-    return upload_nodes8(renderer);
+    whit_result result = upload_nodes8(renderer);
+    renderer->wide = result == WHIT_OK;
+    return result;
 }
 
 /* Rays of a lane for packets whose kernels pay, by the camera rays and shadow rays of one picture.
@@ -422,7 +425,9 @@ static bool choose_packets(struct renderer *renderer)
 whit_result upload_choose_packets(struct renderer *renderer)
 {
     renderer->packets = choose_packets(renderer);
-    return renderer->packets ? upload_wide(renderer) : WHIT_OK;
+    whit_result result = renderer->packets ? upload_wide(renderer) : WHIT_OK;
+    renderer->packets &= result == WHIT_OK;
+    return result;
 }
 
 static whit_result upload_environment(struct renderer *renderer)

@@ -1,6 +1,8 @@
 /* Compares the kernel of ray batches with the float mirror, bit for bit, and both with brute force
    over all triangles. */
 #include "../cases.h"
+#include "../wrapped.h"
+#include "device/buffer.h"
 #include "ray_fixture.h"
 #include "scene/pose.h"
 #include "unit.h"
@@ -197,6 +199,66 @@ TEST(packets_equal_twin)
     check_packets(integer_ring(), NULL, "ring of integers");
     const whit_accel_params flat = {.instances = WHIT_INSTANCES_OFF};
     check_packets(forty_rings(), &flat, "one tree of 40 instances");
+}
+
+/* The name of a buffer that the device has no memory for; whether buffers cannot be read. */
+static const char *no_room;
+static bool unreadable;
+
+WRAPPED(whit_result, buffer_create, struct device *device, uint64_t size_bytes, uint32_t uses,
+        const char *name, struct buffer **out)
+{
+    return no_room && strcmp(name, no_room) == 0
+               ? WHIT_ERROR_MEMORY
+               : __real_buffer_create(device, size_bytes, uses, name, out);
+}
+
+WRAPPED(whit_result, buffer_read, struct buffer *buffer, uint64_t offset_bytes, void *data,
+        uint64_t size_bytes)
+{
+    return unreadable && size_bytes == sizeof(struct gpu_work)
+               ? WHIT_ERROR_DEVICE
+               : __real_buffer_read(buffer, offset_bytes, data, size_bytes);
+}
+
+/* A batch is large enough for packets, but the memory for their nodes is missing at first. */
+TEST(packets_are_tried_again)
+{
+    enum { MANY = 1 << 17 };
+    const whit_renderer_params small = {.width = 16, .height = 16};
+    own_fixture f = fixture_open(scene_of(mesh_torus(1.0, 0.45, 60, 30)), NULL, &small);
+    own_memory struct gpu_ray *rays = array_alloc(MANY, sizeof *rays);
+    own_memory struct gpu_hit *hits = array_alloc(MANY, sizeof *hits);
+    assert_true(rays && hits);
+    if (device_get_info(f.device)->subgroup_size != 8)
+        return;
+    aim_packets(&f, rays, MANY);
+    no_room = "nodes of eight";
+    assert_int_equal(renderer_trace(f.renderer, rays, MANY, false, hits, NULL), WHIT_ERROR_MEMORY);
+    no_room = NULL;
+    unreadable = true;
+    assert_int_equal(renderer_trace(f.renderer, rays, MANY, false, hits, NULL), WHIT_ERROR_DEVICE);
+    assert_int_equal(renderer_trace_together(f.renderer), 0);
+    unreadable = false;
+    assert_int_equal(trace_beside_twin(&f, false, rays, MANY, hits, NULL).hits, 0);
+    assert_true(renderer_trace_together(f.renderer) > MANY / 2);
+}
+
+/* So many views would be drawn in packets, for whose nodes there is no memory. */
+TEST(a_picture_is_drawn_after_views_without_packets)
+{
+    enum { VIEWS = 256 };
+    const whit_renderer_params params = {.width = 64, .height = 64};
+    static const whit_camera cameras[VIEWS];
+    own_fixture f = fixture_open(scene_of(mesh_torus(1.0, 0.45, 60, 30)), NULL, &params);
+    if (device_get_info(f.device)->subgroup_size != 8)
+        return;
+    own_picture before = render_picture(&f);
+    no_room = "nodes of eight";
+    assert_int_equal(renderer_render_views(f.renderer, cameras, VIEWS), WHIT_ERROR_MEMORY);
+    no_room = NULL;
+    own_picture after = render_picture(&f);
+    assert_same_picture("after views", &after, &before);
 }
 
 /* A ray along an axis at multiples of a half, from far away; every fifth ray is from a vertex. */
