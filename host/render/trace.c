@@ -174,6 +174,10 @@ whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays
         log_error(&renderer->log, "costs of rays: not asked for when the renderer was made");
         return WHIT_ERROR_USAGE;
     }
+    if (renderer->between_times) { /* trees and root may be of different times */
+        log_error(&renderer->log, "its time could not be set, so there is nothing to trace");
+        return WHIT_ERROR_USAGE;
+    }
     renderer->trace.device_ms = 0.0;
     renderer->trace.together = 0;
     bool many = count >= TRACE_BEAMS_MIN || renderer->params.packets == WHIT_PACKETS_ON;

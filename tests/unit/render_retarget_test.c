@@ -105,11 +105,15 @@ TEST(nonsense_is_refused)
     own_fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
     whit_renderer_params wrong = steps[0];
     wrong.camera = (whit_camera){.name = "no such camera"};
+    const struct gpu_ray ray = {.dir = {0, 0, 1}, .t_max = INFINITY};
+    struct gpu_hit hit;
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
     check_same(&f, "after a wrong camera", &steps[0]);
+    assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit, NULL), WHIT_OK);
     wrong.time_s = 0.7;
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
     assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_USAGE);
+    assert_int_equal(renderer_trace(f.renderer, &ray, 1, false, &hit, NULL), WHIT_ERROR_USAGE);
     wrong = steps[0];
     wrong.sampling.count = 4097;
     assert_int_equal(renderer_set_view(f.renderer, &wrong), WHIT_ERROR_USAGE);
