@@ -172,7 +172,7 @@ whit_result renderer_set_shader(struct renderer *renderer, const whit_renderer_p
         result = renderer_set_view(renderer, params);
     if (result == WHIT_OK) {
         result = stages_replace(&renderer->picture, before);
-        renderer->between_times = result != WHIT_OK; /* the device has the new shader's sliders */
+        renderer->between_views = result != WHIT_OK; /* the device has the new shader's sliders */
     }
     if (result != WHIT_OK) {
         renderer->params.shader = renderer->portable.shader = before;
