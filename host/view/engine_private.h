@@ -37,9 +37,11 @@ struct engine_lane {
     bool failed;                 /* the request could not be drawn */
     struct settings last;        /* settings of the last picture */
     bool timed;                  /* the stages of the last picture were timed */
-    bool stale;     /* the last picture is by an older session; the right one is being made */
-    bool previewed; /* the last picture is the first step of a new version of the shader */
-    struct session *session;   /* session of the last picture; NULL: none, or gone */
+    /* The last picture is by an older session, while the right one is being made; or its renderer
+       could not be set back to its view. */
+    bool stale;
+    bool previewed;          /* the last picture is the first step of a new version of the shader */
+    struct session *session; /* session of the last picture; NULL: none, or gone */
     struct engine_frame frame; /* the newest picture; number 0: taken */
     uint64_t frames;
     uint64_t first;   /* number of the first picture of the request */

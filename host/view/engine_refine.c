@@ -208,10 +208,12 @@ static whit_result finish_round(struct session *session, struct engine_refine *r
 
 /* Keeps the samples that were added: a new whole picture has the same pixels as the one that
    refining began with. *frame then shows as many samples as the picture before. False: they
-   cannot be kept. */
-static bool keep(struct engine_refine *refine, const struct engine_frame *kept,
-                 struct session *session, struct engine_frame *frame)
+   cannot be kept. Called with engine->lock held, which is released meanwhile: errors are logged
+   under it. */
+static bool keep(struct engine *engine, struct engine_lane *lane, struct session *session,
+                 struct engine_frame *frame)
 {
+    struct engine_refine *refine = &lane->refine;
     const whit_sampling *sampling = &frame->settings.picture.sampling;
     bool goes_on = refine->refine && refine->samples > refine->base.samples &&
                    sampling->kind == WHIT_SAMPLING_FIXED &&
@@ -220,7 +222,10 @@ static bool keep(struct engine_refine *refine, const struct engine_frame *kept,
     if (!goes_on)
         return false;
     set_base(refine, frame);
-    return show_sum(refine, kept, session, frame) == WHIT_OK;
+    pthread_mutex_unlock(&engine->lock);
+    whit_result result = show_sum(refine, &lane->whole, session, frame);
+    pthread_mutex_lock(&engine->lock);
+    return result == WHIT_OK;
 }
 
 /* Draws one part. After the last part of a round *frame is a picture of four times the samples,
@@ -319,8 +324,7 @@ void engine_refine_take(struct engine *engine, const struct engine_task *task, b
         return;
     if (task->refine)
         finish_whole(refine, frame);
-    else if (!(same && !engine->lanes[1].wanted &&
-               keep(refine, &lane->whole, task->session, frame)))
+    else if (!(same && !engine->lanes[1].wanted && keep(engine, lane, task->session, frame)))
         begin(refine, frame);
     engine_frame_finish(&lane->single);
 }

@@ -33,7 +33,7 @@ WHIT_CHECK whit_result engine_refine_whole(const struct engine_task *task,
                                            struct engine_frame *frame);
 /* Lets samples be added to the picture of the task from now on. `same`: it has the same pixels as
    the picture before, and may then keep the samples that were added to that. Called with
-   engine->lock held. */
+   engine->lock held, which it may release meanwhile. */
 void engine_refine_take(struct engine *engine, const struct engine_task *task, bool same,
                         struct engine_frame *frame);
 void engine_refine_stop(struct engine_refine *refine);

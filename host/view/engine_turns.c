@@ -55,8 +55,8 @@ static whit_result draw_turn(void *user, uint32_t way, uint32_t round)
 }
 
 /* Sets the renderers of the shown pictures back to their views, as clicked pixels are traced by
-   them. */
-static void show_again(struct engine *engine)
+   them. Called with engine->lock held, which is released meanwhile: errors are logged under it. */
+static void show_again(struct engine *engine, const struct engine_turns *turns)
 {
     for (int i = 0; i < ENGINE_LANES; ++i) {
         struct engine_lane *lane = &engine->lanes[i];
@@ -65,8 +65,15 @@ static void show_again(struct engine *engine)
             continue;
         session->settings = lane->last;
         const whit_renderer_params params = session_picture(session);
-        if (whit_renderer_set_view(session->renderer, &params) != WHIT_OK)
-            lane->drawn = 0; /* draw it again, which reports the error */
+        engine->drawing = session;
+        engine->timing = turns;
+        pthread_mutex_unlock(&engine->lock);
+        whit_result result = whit_renderer_set_view(session->renderer, &params);
+        pthread_mutex_lock(&engine->lock);
+        engine->drawing = NULL;
+        engine->timing = NULL;
+        if (result != WHIT_OK)
+            lane->stale = true; /* draw it again, which reports the error */
     }
 }
 
@@ -78,9 +85,10 @@ static const char *why_not(const struct engine *engine, const struct engine_turn
         if (!engine_find_session(engine, &turns->settings[i]))
             return "the version before is gone";
     }
-    if (turns->stopped || !engine_is_idle(engine))
-        return ENGINE_TURNS_STOPPED;
-    return result == WHIT_ERROR_CANCELLED ? "pictures take too long" : "a picture failed";
+    if (result != WHIT_OK && result != WHIT_ERROR_CANCELLED)
+        return "a picture failed";
+    return turns->stopped || !engine_is_idle(engine) ? ENGINE_TURNS_STOPPED
+                                                     : "pictures take too long";
 }
 
 const char *engine_turns_measure(struct engine *engine, struct engine_turns *turns,
@@ -93,7 +101,7 @@ const char *engine_turns_measure(struct engine *engine, struct engine_turns *tur
     turns->start_ms = whit_clock_ms();
     whit_result result = sample_in_turns(2, PAIRS, draw_turn, turns);
     uint32_t pairs = before->count < after->count ? before->count : after->count;
-    show_again(engine);
+    show_again(engine, turns);
     if (pairs < PAIRS_MIN)
         return why_not(engine, turns, result);
     (void)sample_compare(after->values, before->values, pairs, differences, difference);

@@ -2,6 +2,7 @@
    users who ask for the next picture before one is done. */
 #include <pthread.h>
 #include <stdatomic.h>
+#include <vulkan/vulkan.h>
 
 #include "../wrapped.h"
 #include "base/clock.h"
@@ -263,6 +264,82 @@ TEST(memory_that_runs_out_is_said)
         assert_true(said_count >= 2 && blocks < 1000);
         close_engine(engine, &right);
     }
+}
+
+static atomic_bool device_is_full;
+
+WRAPPED(VkResult, vkAllocateMemory, VkDevice device, const VkMemoryAllocateInfo *info,
+        const VkAllocationCallbacks *callbacks, VkDeviceMemory *memory)
+{
+    if (atomic_load(&device_is_full))
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    return __real_vkAllocateMemory(device, info, callbacks, memory);
+}
+
+/* Pictures of other depths need other buffers. The engine logs that it cannot make them, and goes
+   on. */
+TEST(memory_that_runs_out_while_a_change_is_timed_is_said)
+{
+    struct engine_frame frame;
+    struct engine_status status;
+    struct settings settings = settings_of("whitted.json");
+    settings.picture.depth = 4;
+    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
+    settings.picture.depth = 8;
+    draw(engine, &settings, &frame);
+    atomic_store(&device_is_full, true);
+    engine_set_rest(engine, false, true); /* times the change */
+    double start_ms = clock_ms();
+    do {
+        (void)take(engine, &frame, start_ms);
+        engine_get_status(engine, &status);
+    } while (!status.change.over);
+    assert_int_equal(status.change.number, 1);
+    assert_int_equal(status.change.ms.count, 0);
+    take_all(engine, &frame);
+    engine_get_status(engine, &status);
+    assert_string_not_equal(status.error, "");
+    atomic_store(&device_is_full, false);
+    settings.picture.depth = 4;
+    draw(engine, &settings, &frame);
+    engine_get_status(engine, &status);
+    assert_true(frame.whole);
+    assert_string_equal(status.error, "");
+    close_engine(engine, &frame);
+}
+
+static atomic_bool images_fail;
+
+WRAPPED(whit_result, whit_image_create, uint32_t width, uint32_t height, uint32_t channels,
+        const float *pixels, whit_image **out)
+{
+    *out = NULL;
+    return atomic_load(&images_fail)
+               ? WHIT_ERROR_MEMORY
+               : __real_whit_image_create(width, height, channels, pixels, out);
+}
+
+/* A refined picture keeps its samples under another traversal, if there is memory to show them. */
+TEST(memory_that_runs_out_for_kept_samples_is_survived)
+{
+    struct engine_frame frame;
+    struct engine_status status;
+    struct settings settings = settings_of("cube.json");
+    struct engine *engine = engine_of(&(struct engine_params){.refine = true}, &settings, &frame);
+    double start_ms = clock_ms();
+    while (!frame.refined)
+        (void)take(engine, &frame, start_ms);
+    engine_set_rest(engine, false, false);
+    for (int i = 0; i < 2; ++i) {
+        settings.picture.traversal = i == 0 ? WHIT_TRAVERSAL_SIGN : WHIT_TRAVERSAL_BASIC;
+        atomic_store(&images_fail, i == 1);
+        draw(engine, &settings, &frame);
+        atomic_store(&images_fail, false);
+        engine_get_status(engine, &status);
+        assert_string_equal(status.error, "");
+        assert_true(frame.whole && frame.refined == (i == 0));
+    }
+    close_engine(engine, &frame);
 }
 
 /* ---- Moving cameras ---- */
