@@ -289,24 +289,24 @@ whit_result session_reload(struct session *session, const struct settings *setti
     atomic_store(&session->stage, SESSION_SHADER);
     if (!session->shader)
         result = load_shader(session, parts->compiler);
-    if (result != WHIT_OK) {
+    if (result == WHIT_OK)
+        result = settings_choose_camera(&session->settings, session->scene->scene);
+    if (result != WHIT_OK) { /* the renderer goes on borrowing the shader before */
+        shader_ref_drop(session->shader);
         session->settings = settings_before;
         session->shader = before;
         return result;
     }
     atomic_store(&session->stage, SESSION_COMPILING);
     double start_ms = whit_clock_ms();
-    result = settings_choose_camera(&session->settings, session->scene->scene);
-    if (result == WHIT_OK) {
-        whit_renderer_params params = session_picture(session);
-        params.shader = session->shader->shader;
-        params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_FIXED, .count = 1};
-        params.step_spacing = FIRST_STEP;
-        params.reuse_rays = true;
-        params.few_pixels = true;
-        params.step_aov = shader_ref_find_aov(session->shader, session->settings.aov) + 1;
-        result = draw_step(session, &params);
-    }
+    whit_renderer_params params = session_picture(session);
+    params.shader = session->shader->shader;
+    params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_FIXED, .count = 1};
+    params.step_spacing = FIRST_STEP;
+    params.reuse_rays = true;
+    params.few_pixels = true;
+    params.step_aov = shader_ref_find_aov(session->shader, session->settings.aov) + 1;
+    result = draw_step(session, &params);
     session->compile_ms = whit_clock_ms() - start_ms;
     shader_ref_drop(before);
     atomic_store(&session->stage, SESSION_DONE);

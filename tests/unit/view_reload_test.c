@@ -1,4 +1,7 @@
 /* The report on a change of a file of functions that is saved while the engine shows it. */
+#include <stdatomic.h>
+
+#include "../wrapped.h"
 #include "base/clock.h"
 #include "folder_fixture.h"
 #include "view/shaders.h"
@@ -141,6 +144,36 @@ TEST_IN(the_first_save_finds_a_session, begin, end)
     assert_int_equal(frame.settings.shader_reload, settings.shader_reload);
     take_all(false);
     assert_int_equal(status_now().reload.number, 1);
+}
+
+static atomic_bool cameras_missing;
+
+WRAPPED(whit_result, whit_scene_choose_camera, const whit_scene *scene, whit_camera *camera)
+{
+    if (atomic_load(&cameras_missing))
+        return WHIT_ERROR_MEMORY;
+    return __real_whit_scene_choose_camera(scene, camera);
+}
+
+/* A session whose camera cannot be chosen stays one of the version before. */
+TEST_IN(a_version_without_a_camera_is_made_again, begin, end)
+{
+    ask("vec3 post(ivec2 at, vec3 color) { return color.bgr; }\n");
+    take_all(false); /* the session of the first version is free for the next one */
+    snprintf(settings.camera, sizeof settings.camera, "auto");
+    atomic_store(&cameras_missing, true);
+    ask("vec3 post(ivec2 at, vec3 color) { return vec3(1.0, 0.0, 0.0); }\n");
+    double start_ms = clock_ms();
+    while (!status_now().failed || status_now().stage != SESSION_DONE) {
+        engine_wait(engine, 5.0);
+        assert_true(clock_ms() - start_ms < PATIENCE_MS);
+    }
+    atomic_store(&cameras_missing, false);
+    settings.picture.exposure_ev = 1.0;
+    engine_ask(engine, &settings, false);
+    take_all(false);
+    assert_int_equal(frame.settings.shader_reload, settings.shader_reload);
+    assert_memory_equal(frame.rgba, ((const uint8_t[]){255, 0, 0, 255}), 4);
 }
 
 /* Measuring a reload stops where something else is asked for, and no values are made up for what
