@@ -103,8 +103,8 @@ void panels_load(struct view *view, const char *path)
 static void draw_number(struct view *view, const struct setting *row)
 {
     double number = choice_number(&view->settings, row);
-    uint32_t count = (uint32_t)number;
     bool is_count = row->kind == SETTING_COUNT;
+    uint32_t count = is_count ? (uint32_t)number : 0; /* other numbers may be below 0 */
     if (is_count ? ui_slider_count(row->title, &count, (uint32_t)row->shown_min,
                                    (uint32_t)row->shown_max)
                  : ui_slider(row->title, &number, row->shown_min, row->shown_max, false))
