@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE_MAX = 32768 };
 static const uint64_t PIXELS_MAX = UINT64_C(1) << 28;
 
 typedef char folder[SETTING_PATH_BYTES];
@@ -127,14 +126,14 @@ static bool read_size(const char *text, uint32_t out[2], char *why)
         good = !*end;
     }
     for (int i = 0; i < 2; ++i)
-        good = good && sides[i] >= 1 && sides[i] <= SIDE_MAX;
+        good = good && sides[i] >= 1 && sides[i] <= SETTING_SIDE_MAX;
     if (good && (uint64_t)sides[0] * sides[1] > PIXELS_MAX)
         return setting_refuse(why, " `%s`: %llu pixels are more than %llu, the most of a picture",
                               text, (unsigned long long)sides[0] * sides[1],
                               (unsigned long long)PIXELS_MAX);
     if (!good)
         return setting_refuse(why, " `%s`: WxH is needed, each from 1 to %d, such as 1280x720",
-                              text, SIDE_MAX);
+                              text, SETTING_SIDE_MAX);
     out[0] = (uint32_t)sides[0];
     out[1] = (uint32_t)sides[1];
     return true;

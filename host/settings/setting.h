@@ -9,6 +9,7 @@
 enum { SETTING_TEXT_BYTES = 384, SETTING_PATH_BYTES = 1024, SETTING_FOLDERS_MAX = 8 };
 /* The sizes of the text that setting_write gives, and of the reason why setting_read refuses. */
 enum { SETTING_VALUE_BYTES = SETTING_PATH_BYTES, SETTING_WHY_BYTES = 1400 };
+enum { SETTING_SIDE_MAX = 32768 }; /* the most of a picture's width or height, pixels */
 
 enum setting_kind {
     SETTING_FLAG,    /* bool: the option has no argument and sets it */

@@ -8,6 +8,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "settings/setting.h"
 
 static const struct key_name {
     int key;
@@ -66,6 +67,15 @@ static bool key_from_name(const char *name, int *key)
             return true;
     }
     return false;
+}
+
+/* Parses the size of a window, in the range of --size. */
+static bool parse_size(const char *rest, struct view_event *event)
+{
+    event->kind = EVENT_SIZE;
+    return sscanf(rest, "%u %u", &event->width, &event->height) == 2 && event->width > 0 &&
+           event->height > 0 && event->width <= SETTING_SIDE_MAX &&
+           event->height <= SETTING_SIDE_MAX;
 }
 
 /* Parses "Shift+Ctrl+T". */
@@ -189,9 +199,8 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
     event->kind = EVENT_CLOCK;
     if (strcmp(verb, "clock") == 0)
         return strcmp(rest, "real") == 0;
-    event->kind = EVENT_SIZE;
     if (strcmp(verb, "size") == 0)
-        return sscanf(rest, "%u %u", &event->width, &event->height) == 2;
+        return parse_size(rest, event);
     event->kind = EVENT_CHAR;
     if (strcmp(verb, "char") == 0)
         return sscanf(rest, "%u", &event->code) == 1;
