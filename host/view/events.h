@@ -1,15 +1,15 @@
 /* Events of the user, from the window or from a file of a replay.
 
    A file has one event a line; # begins a comment. --record writes:
-       wait MS | key NAME down|up [Shift+][Ctrl+][Alt+] | char CODE | button left|right|middle
+       wait MS | key [Shift+][Ctrl+][Alt+]NAME down|up | char CODE | button left|right|middle
        down|up | move X Y | wheel X Y | size W H | drop PATH | close
+       clock real                        `wait` takes real time from here on
    Replays, which tests use, may also have:
        press [Shift+][Ctrl+][Alt+]NAME   a key down and up
        click X Y                         moves there; the left button down and up
        still, picture, priced, refined, until FIELD [= VALUE], await PATH
                                          the replay waits for that
        choose LABEL                      a click on the item with this label, once it is there
-       clock real                        `wait` takes real time from here on
        state [NAME]                      writes one line of JSON to standard output
        shot FILE.png                     saves the window, with what is drawn over the picture
        minimise | restore
