@@ -421,6 +421,16 @@ static json_t *condition_json(struct view *view, const char *condition)
     return root;
 }
 
+/* Whether a value is missing, empty, null, false or 0. */
+static bool is_nothing(const json_t *value)
+{
+    return !value || json_is_null(value) || json_is_false(value) ||
+           (json_is_string(value) && json_string_length(value) == 0) ||
+           (json_is_number(value) && json_number_value(value) == 0.0) ||
+           (json_is_object(value) && json_object_size(value) == 0) ||
+           (json_is_array(value) && json_array_size(value) == 0);
+}
+
 bool state_has(struct view *view, const char *condition)
 {
     const char *equals = strstr(condition, " = ");
@@ -429,9 +439,7 @@ bool state_has(struct view *view, const char *condition)
         find_field(root, condition, equals ? (size_t)(equals - condition) : strlen(condition));
     char *dumped = json_dumps(field, JSON_ENCODE_ANY);
     const char *text = json_is_string(field) ? json_string_value(field) : dumped ? dumped : "";
-    bool nothing = !text[0] || json_is_false(field) ||
-                   (json_is_number(field) && json_number_value(field) == 0.0);
-    bool has = equals ? strcmp(text, equals + 3) == 0 : !nothing;
+    bool has = equals ? strcmp(text, equals + 3) == 0 : !is_nothing(field);
     free(dumped);
     json_decref(root);
     return has;

@@ -58,6 +58,7 @@ bomb() {
 put() { cp "$1" live/new && mv live/new "$2"; }
 if part 0 2; then
     steps >"$OUT/replay" <<END
+shown! until shader | shader.hash = $white
 start: | toast has did you mean \`height\`? | shader.hash = $white | shader.files = 2 | shader.sliders = 2 | render has --shader live/a.glsl
 until shader.first = 1
 step! | shader.hash = $red
