@@ -72,9 +72,10 @@ static bool key_from_name(const char *name, int *key)
 /* Parses the size of a window, in the range of --size. */
 static bool parse_size(const char *rest, struct view_event *event)
 {
+    int end = 0;
     event->kind = EVENT_SIZE;
-    return sscanf(rest, "%u %u", &event->width, &event->height) == 2 && event->width > 0 &&
-           event->height > 0 && event->width <= SETTING_SIDE_MAX &&
+    return sscanf(rest, "%u %u %n", &event->width, &event->height, &end) == 2 && !rest[end] &&
+           event->width > 0 && event->height > 0 && event->width <= SETTING_SIDE_MAX &&
            event->height <= SETTING_SIDE_MAX;
 }
 
@@ -105,16 +106,19 @@ static bool state_from_text(const char *text, bool *down)
 static bool parse_key(const char *rest, struct view_event *event)
 {
     char name[32], state[8];
+    int end = 0;
     event->kind = EVENT_KEY;
-    return sscanf(rest, "%31s %7s", name, state) == 2 && state_from_text(state, &event->down) &&
-           chord_from_text(name, &event->key, &event->mods);
+    return sscanf(rest, "%31s %7s %n", name, state, &end) == 2 && !rest[end] &&
+           state_from_text(state, &event->down) && chord_from_text(name, &event->key, &event->mods);
 }
 
 static bool parse_button(const char *rest, struct view_event *event)
 {
     char name[16], state[8];
+    int end = 0;
     event->kind = EVENT_BUTTON;
-    if (sscanf(rest, "%15s %7s", name, state) != 2 || !state_from_text(state, &event->down))
+    if (sscanf(rest, "%15s %7s %n", name, state, &end) != 2 || rest[end] ||
+        !state_from_text(state, &event->down))
         return false;
     for (event->button = 0; event->button < 3; ++event->button) {
         if (strcmp(button_names[event->button], name) == 0)
@@ -125,9 +129,10 @@ static bool parse_button(const char *rest, struct view_event *event)
 
 static bool parse_pair(const char *rest, enum view_event_kind kind, struct view_event *event)
 {
+    int end = 0;
     event->kind = kind;
-    return sscanf(rest, "%lf %lf", &event->x, &event->y) == 2 && isfinite(event->x) &&
-           isfinite(event->y);
+    return sscanf(rest, "%lf %lf %n", &event->x, &event->y, &end) == 2 && !rest[end] &&
+           isfinite(event->x) && isfinite(event->y);
 }
 
 static bool parse_path(const char *rest, enum view_event_kind kind, struct view_event *event)
@@ -140,7 +145,9 @@ static bool parse_path(const char *rest, enum view_event_kind kind, struct view_
 static bool parse_press(const char *rest, struct view_event events[EVENTS_A_LINE], int *count)
 {
     char name[32];
-    if (sscanf(rest, "%31s", name) != 1 || !chord_from_text(name, &events[0].key, &events[0].mods))
+    int end = 0;
+    if (sscanf(rest, "%31s %n", name, &end) != 1 || rest[end] ||
+        !chord_from_text(name, &events[0].key, &events[0].mods))
         return false;
     events[0].kind = EVENT_KEY;
     events[1] = events[0];
@@ -173,11 +180,12 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
                  {"shot", EVENT_SHOT, true},          {"until", EVENT_UNTIL, true},
                  {"await", EVENT_AWAIT, true},        {"choose", EVENT_CHOOSE, true}};
     struct view_event *event = &events[0];
+    int end = 0;
     *count = 1;
     for (size_t i = 0; i < sizeof plain / sizeof *plain; ++i) {
         if (strcmp(plain[i].verb, verb) == 0) {
             event->kind = plain[i].kind;
-            return !plain[i].has_path || parse_path(rest, event->kind, event);
+            return plain[i].has_path ? parse_path(rest, event->kind, event) : !rest[0];
         }
     }
     if (strcmp(verb, "state") == 0) {
@@ -203,10 +211,10 @@ static bool parse(const char *verb, const char *rest, struct view_event events[E
         return parse_size(rest, event);
     event->kind = EVENT_CHAR;
     if (strcmp(verb, "char") == 0)
-        return sscanf(rest, "%u", &event->code) == 1;
+        return sscanf(rest, "%u %n", &event->code, &end) == 1 && !rest[end];
     event->kind = EVENT_WAIT;
-    return strcmp(verb, "wait") == 0 && sscanf(rest, "%lf", &event->x) == 1 && event->x >= 0.0 &&
-           isfinite(event->x);
+    return strcmp(verb, "wait") == 0 && sscanf(rest, "%lf %n", &event->x, &end) == 1 &&
+           !rest[end] && event->x >= 0.0 && isfinite(event->x);
 }
 
 bool events_from_line(const whit_log *log, const char *file, uint32_t line, const char *text,

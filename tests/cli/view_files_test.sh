@@ -277,7 +277,8 @@ bad() { # TEXT: a replay with this line is refused, with file and line
     refuse 2 "\`$1\`" "bad.replay:4: .*no event of a replay" view "$CUBE" --replay bad.replay
 }
 for text in "jump" "until" "await" "choose" "clock" "clock false" "key T" "key T sideways" "press Hyper+T" "press" "move 1" "click 1" "wheel" \
-    "size 10" "size x y" "size 0 1" "size 2000000 1" "wait -1" "wait soon" "button none down" "char x" "shot" "drop"; do
+    "size 10" "size x y" "size 0 1" "size 2000000 1" "size 96 64 1" "wait 5s" "still T" "press T U" "key T up down" "click 1 2 3" \
+    "char 65x" "button left up down" "wait -1" "wait soon" "button none down" "char x" "shot" "drop"; do
     bad "$text"
 done
 refuse 2 "no replay" "nowhere.replay" view "$CUBE" --replay nowhere.replay
