@@ -4,6 +4,6 @@
 
 #include "image/image.h"
 
-#define own_image __attribute__((cleanup(image_finish))) struct image
+#define own_image __attribute__((cleanup(image_finish), unused)) struct image
 
 #endif
