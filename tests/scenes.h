@@ -51,10 +51,10 @@ static inline void drop_scene(struct scene **at)
 }
 
 /* Freed at the end of its block: own_scene *scene = ...; */
-#define own_scene __attribute__((cleanup(drop_scene))) struct scene
+#define own_scene __attribute__((cleanup(drop_scene), unused)) struct scene
 
 /* Freed at the end of its block; for sources that have scene/pose.h. */
-#define own_pose  __attribute__((cleanup(scene_pose_finish))) struct scene_pose
+#define own_pose  __attribute__((cleanup(scene_pose_finish), unused)) struct scene_pose
 
 /* Begins an empty scene. `log` may be NULL. */
 struct scene *scene_begin(const whit_log *log, const char *name);

@@ -46,7 +46,7 @@ static inline void soup_shuffle(struct soup *soup)
 /* ---- Builds ---- */
 
 /* Freed at the end of its block. */
-#define own_bvh __attribute__((cleanup(bvh_finish))) struct bvh
+#define own_bvh __attribute__((cleanup(bvh_finish), unused)) struct bvh
 
 static inline struct bvh soup_build(const struct soup *soup, whit_accel_params params)
 {

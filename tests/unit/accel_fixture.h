@@ -70,7 +70,7 @@ static inline void soup_finish(struct soup *soup)
 }
 
 /* Freed at the end of its block. */
-#define own_soup __attribute__((cleanup(soup_finish))) struct soup
+#define own_soup __attribute__((cleanup(soup_finish), unused)) struct soup
 
 static inline const float *soup_vertex(const struct soup *soup, uint32_t triangle, uint32_t corner)
 {
@@ -240,7 +240,7 @@ static inline void drop_accel(struct accel **at)
 }
 
 /* Freed at the end of its block: own_accel *accel = accel_of(...); */
-#define own_accel __attribute__((cleanup(drop_accel))) struct accel
+#define own_accel __attribute__((cleanup(drop_accel), unused)) struct accel
 
 /* Builds the trees of a frozen scene, and validates them. */
 static inline struct accel *accel_of(const struct scene *scene, whit_accel_params params)
@@ -269,7 +269,7 @@ static inline void world_finish(struct world *world)
 }
 
 /* Freed at the end of its block. */
-#define own_world __attribute__((cleanup(world_finish))) struct world
+#define own_world __attribute__((cleanup(world_finish), unused)) struct world
 
 /* A scene with one material and one instance at the origin. */
 static inline struct scene *soup_scene(const struct soup *soup)

@@ -54,7 +54,7 @@ static whit_refine_info refine_to(const struct refining *o, uint32_t samples)
 }
 
 /* Ends with its block: own_refining o = begin(...); */
-#define own_refining __attribute__((cleanup(end))) struct refining
+#define own_refining __attribute__((cleanup(end), unused)) struct refining
 
 /* Rays of the last part that the renderer drew. */
 static uint64_t rays_of(const whit_renderer *renderer)

@@ -70,7 +70,7 @@ static inline void kernel_free(struct kernel_run *run)
 }
 
 /* Freed at the end of its block, where its buffers must still exist: own_kernel run = ...; */
-#define own_kernel __attribute__((cleanup(kernel_free))) struct kernel_run
+#define own_kernel __attribute__((cleanup(kernel_free), unused)) struct kernel_run
 
 static inline void drop_buffer(struct buffer **at)
 {
@@ -79,7 +79,7 @@ static inline void drop_buffer(struct buffer **at)
 
 /* Freed at the end of its block, where its device must still exist:
    own_buffer *buffer = buffer_make(...); */
-#define own_buffer __attribute__((cleanup(drop_buffer))) struct buffer
+#define own_buffer __attribute__((cleanup(drop_buffer), unused)) struct buffer
 
 static inline struct buffer *buffer_make(struct device *device, uint64_t size_bytes, uint32_t uses,
                                          const char *name)
@@ -102,7 +102,7 @@ static inline void drop_commands(struct commands **at)
 }
 
 /* Waited for and freed at the end of its block, where its kernels must still exist. */
-#define own_commands __attribute__((cleanup(drop_commands))) struct commands
+#define own_commands __attribute__((cleanup(drop_commands), unused)) struct commands
 
 static inline void commands_finish(struct commands *commands)
 {

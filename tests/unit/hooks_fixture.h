@@ -26,7 +26,7 @@ static inline void drop_shader(whit_shader **at)
 
 /* Freed at the end of its block; a renderer with these functions is declared after them, or freed
    before. */
-#define own_whit_shader __attribute__((cleanup(drop_shader))) whit_shader
+#define own_whit_shader __attribute__((cleanup(drop_shader), unused)) whit_shader
 
 /* Loads functions from a temporary file with this text. */
 static inline whit_result hooks_try(const char *text, whit_shader **shader)

@@ -26,7 +26,7 @@ static void drop_bytes(struct bytes *bytes)
     free(bytes->data);
 }
 
-#define own_bytes __attribute__((cleanup(drop_bytes))) struct bytes
+#define own_bytes __attribute__((cleanup(drop_bytes), unused)) struct bytes
 
 /* A test picture: smooth, so that JPEG keeps it, and different in every channel. */
 static uint8_t texel(int x, int y, int channel)

@@ -5,7 +5,7 @@
 
 #include "oracle/rational.h"
 
-#define own_rational __attribute__((cleanup(drop_rational))) struct rational
+#define own_rational __attribute__((cleanup(drop_rational), unused)) struct rational
 
 static inline void drop_rational(struct rational **at)
 {

@@ -96,7 +96,7 @@ static inline void fixture_close(struct fixture *f)
 }
 
 /* Closed at the end of its block. */
-#define own_fixture __attribute__((cleanup(fixture_close))) struct fixture
+#define own_fixture __attribute__((cleanup(fixture_close), unused)) struct fixture
 
 /* Asserts that no renderer of the trees of `f` can be made with any params of `wrong`. */
 static inline void fixture_refuses(const struct fixture *f, const whit_renderer_params *wrong,
@@ -141,7 +141,7 @@ static inline void picture_finish(struct picture *picture)
 }
 
 /* Freed at the end of its block. */
-#define own_picture __attribute__((cleanup(picture_finish))) struct picture
+#define own_picture __attribute__((cleanup(picture_finish), unused)) struct picture
 
 /* The picture of a scene, which it destroys. */
 static inline struct image color_of(struct scene *scene, const whit_accel_params *accel,

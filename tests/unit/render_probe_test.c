@@ -154,7 +154,7 @@ static void assert_report(const struct probe_report *report)
 /* ---- A picture, pixel by pixel ---- */
 
 /* Freed at the end of its block. */
-#define own_report __attribute__((cleanup(probe_report_finish))) struct probe_report
+#define own_report __attribute__((cleanup(probe_report_finish), unused)) struct probe_report
 
 /* Probes a pixel; records at most `max` rays, 0: all. */
 static struct probe_report probe(const struct fixture *f, uint32_t x, uint32_t y, uint32_t max)

@@ -62,7 +62,7 @@ static inline void drop_renderer(whit_renderer **at)
 
 /* Freed at the end of its block, where its scene must still be open:
    own_whit_renderer *renderer = renderer_of(...); */
-#define own_whit_renderer __attribute__((cleanup(drop_renderer))) whit_renderer
+#define own_whit_renderer __attribute__((cleanup(drop_renderer), unused)) whit_renderer
 
 static inline whit_renderer *renderer_of(const whit_renderer_params *params)
 {
@@ -77,7 +77,7 @@ static inline void drop_image(whit_image **at)
 }
 
 /* Freed at the end of its block: own_whit_image *image = image_of(...); */
-#define own_whit_image __attribute__((cleanup(drop_image))) whit_image
+#define own_whit_image __attribute__((cleanup(drop_image), unused)) whit_image
 
 static inline whit_image *image_of(whit_renderer *renderer, whit_aov aov)
 {

@@ -31,7 +31,7 @@ static void drop(struct loaded *loaded)
 }
 
 /* Freed at the end of its block, once take() has filled it. */
-#define own_loaded __attribute__((cleanup(drop))) struct loaded
+#define own_loaded __attribute__((cleanup(drop), unused)) struct loaded
 
 /* A floor, a textured box and a ball below a node that moves, under a sun and a lamp. */
 struct wish {

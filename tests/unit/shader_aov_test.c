@@ -54,7 +54,7 @@ static void drop(struct drawn *drawn)
 }
 
 /* Freed at the end of its block: own_drawn all = draw(...); */
-#define own_drawn __attribute__((cleanup(drop))) struct drawn
+#define own_drawn __attribute__((cleanup(drop), unused)) struct drawn
 
 static struct drawn draw(const whit_renderer_params *params)
 {

@@ -131,7 +131,7 @@ static inline void assert_valid(const struct shader_code *code)
 }
 
 /* Freed at the end of its block. */
-#define own_shader_code __attribute__((cleanup(shader_code_free))) struct shader_code
+#define own_shader_code __attribute__((cleanup(shader_code_free), unused)) struct shader_code
 
 /* Fails with what was logged. */
 static inline struct shader_code must_compile(const char *a)

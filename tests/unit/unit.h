@@ -60,6 +60,6 @@ static inline void drop_memory(void *at)
 }
 
 /* Freed at the end of its block: own_memory char *text = ...; */
-#define own_memory __attribute__((cleanup(drop_memory)))
+#define own_memory __attribute__((cleanup(drop_memory), unused))
 
 #endif
