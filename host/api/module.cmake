@@ -50,9 +50,12 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/cmake/whitConfigVersion.c
 install(TARGETS whit whit_shared EXPORT whitTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 # The installed archive is one object, in which only whit_* are global: its other names may be its user's too. The
-# linkers of LLVM cannot resolve the groups of sanitized objects there, so that it needs those of GNU.
-find_program(WHIT_GNU_LD NAMES ${CMAKE_LIBRARY_ARCHITECTURE}-ld.bfd ld.bfd)
-find_program(WHIT_GNU_OBJCOPY NAMES ${CMAKE_LIBRARY_ARCHITECTURE}-objcopy objcopy)
+# linkers of LLVM cannot resolve the groups of sanitized objects there, so that it needs those of GNU,
+# which are for the host alone.
+if(NOT CMAKE_CROSSCOMPILING)
+  find_program(WHIT_GNU_LD ld.bfd)
+  find_program(WHIT_GNU_OBJCOPY objcopy)
+endif()
 if(WHIT_GNU_LD AND WHIT_GNU_OBJCOPY)
   install(CODE "set(archive \"${CMAKE_INSTALL_LIBDIR}/$<TARGET_FILE_NAME:whit>\")
     cmake_path(ABSOLUTE_PATH archive BASE_DIRECTORY \"\${CMAKE_INSTALL_PREFIX}\")

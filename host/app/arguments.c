@@ -398,7 +398,7 @@ static bool check_files(struct cli_reader *reader, const void *own, const struct
     if (strcmp(first, "BENCH") != 0)
         files[count++] = (struct cli_file){first, reader->positional, false};
     files[count++] = (struct cli_file){second, reader->second, false};
-    for (uint32_t i = 0; i < reader->other_count; ++i)
+    for (uint32_t i = 0; strcmp(first, "SUITE") != 0 && i < reader->other_count; ++i)
         files[count++] = (struct cli_file){second, reader->others[i], false};
     for (const struct setting *row = reader->command->options; row->name; ++row) {
         if (row->kind != SETTING_NAME ||

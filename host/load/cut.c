@@ -109,7 +109,7 @@ static const char *skip_corners(const char *at, unsigned long long vertex_count,
         at += strspn(at, " \t");
         size_t length = strcspn(at, " \t\n");
         whole = length > 0;
-        *bad |= *at == '-' || strtoull(at, NULL, 10) >= vertex_count;
+        *bad |= whole && (*at == '-' || strtoull(at, NULL, 10) >= vertex_count);
         at += length;
     }
     return whole && *count >= 0 ? at + strspn(at, " \t") : NULL;

@@ -93,11 +93,11 @@ static size_t read_line(const uint8_t *data, size_t size_bytes, size_t at,
 static bool add_property(struct header *header, char words[WORDS_MAX][WORD_BYTES])
 {
     bool list = strcmp(words[1], "list") == 0;
-    const char *red = strncmp(words[2], "diffuse_", 8) == 0 ? words[2] + 8 : words[2];
+    const char *channel = strncmp(words[2], "diffuse_", 8) == 0 ? words[2] + 8 : words[2];
     const struct property property = {.list = list,
                                       .is_corners = strncmp(words[4], "vertex_ind", 10) == 0,
-                                      .is_red = strcmp(red, "red") == 0,
-                                      .is_alpha = strcmp(words[2], "alpha") == 0,
+                                      .is_red = strcmp(channel, "red") == 0,
+                                      .is_alpha = strcmp(channel, "alpha") == 0,
                                       .line = header->line_count,
                                       .count = type_of(words[2]),
                                       .value = type_of(words[list ? 3 : 1])};
@@ -518,6 +518,8 @@ static void put_data(struct output *to, const uint8_t *data, size_t begin,
         if (!empty)
             put(to, start, (size_t)((lines ? from.end + (from.end < end) : from.at) - start));
     }
+    if (lines && to->used && to->bytes[to->used - 1] != '\n') /* the file's last line */
+        to->bytes[to->used++] = '\n';
 }
 
 static bool put_element(struct output *to, const uint8_t *data, const struct element *element,
@@ -527,7 +529,7 @@ static bool put_element(struct output *to, const uint8_t *data, const struct ele
     size_t begin = element->begin;
     if (element->empty_count) {
         begin += strcspn((const char *)data + begin, "\r\n");
-        to->used += (size_t)sprintf((char *)to->bytes + to->used, "element face %llu",
+        to->used += (size_t)sprintf((char *)to->bytes + to->used, "element %s %llu", element->name,
                                     element->count - element->empty_count);
         size_t next = read_line(data, element->end, begin, words);
         put(to, data + begin, next - begin);
@@ -614,7 +616,7 @@ whit_result ply_check_elements(struct scene *scene, const char *path, uint8_t **
     if (result == WHIT_OK && has_data)
         result = check_elements(&scene->log, path, *data, *size_bytes, &header);
     if (result == WHIT_OK && has_data) {
-        struct output kept = {.bytes = array_alloc(*size_bytes + 1, 1)};
+        struct output kept = {.bytes = array_alloc(*size_bytes + 2, 1)};
         if (!kept.bytes || !keep_read(&kept, *data, &header, paint)) {
             free(kept.bytes);
             result = WHIT_ERROR_MEMORY;

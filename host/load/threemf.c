@@ -62,9 +62,11 @@ static bool attribute(const char *tag, const char *name, char value[VALUE_BYTES]
 {
     size_t length = strlen(name);
     const char *end = tag + strcspn(tag, ">");
-    for (const char *at = tag; (at = memmem(at, (size_t)(end - at), name, length)); at += length)
-        if (at > tag && (unsigned char)at[-1] <= ' ' && at[length] == '=')
-            return sscanf(at + length + 1, "%*1[\"']%127[^\"'>]", value) == 1;
+    for (const char *at = tag; (at = memmem(at, (size_t)(end - at), name, length)); at += length) {
+        const char *equals = at + length + strspn(at + length, " \t\r\n");
+        if (at > tag && (unsigned char)at[-1] <= ' ' && *equals == '=')
+            return sscanf(equals + 1, " %*1[\"']%127[^\"'>]", value) == 1;
+    }
     return false;
 }
 
@@ -185,10 +187,12 @@ static void check_extensions(const char *text, struct threemf_head *head)
     static const char *const known[] = {"/material/", "/production/", "/trianglesets/"};
     const char *tag = strstr(text, "<model");
     char prefixes[VALUE_BYTES] = "", *rest = NULL;
-    if (strstr(text, ":path="))
-        snprintf(
-            head->refused, sizeof head->refused,
-            "it has objects in several files (production extension), which whit does not read");
+    for (const char *part = text; (part = strchr(part, '<')); part++)
+        if ((is_tag(part, "component") || is_tag(part, "item")) &&
+            memmem(part, strcspn(part, ">"), ":path=", 6))
+            snprintf(
+                head->refused, sizeof head->refused,
+                "it has objects in several files (production extension), which whit does not read");
     if (!tag || !attribute(tag, "requiredextensions", prefixes))
         return;
     for (char *at = strtok_r(prefixes, " \t\r\n", &rest); at;

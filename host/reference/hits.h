@@ -19,7 +19,7 @@ struct shadow_ray {
 struct shadow {
     bool blocked;
     struct hit blocker; /* if `blocked` */
-    double stops[3];    /* light lost in filters, in 1/1024 stops; may be negative */
+    double stops[3];    /* light lost in filters, in 1/256 stops; may be negative */
     double filter_end;  /* the t from which absorption is measured */
 };
 

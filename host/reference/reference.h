@@ -13,7 +13,7 @@
    - Instances are placed by the pose's matrices in double. Vertices, materials and camera vectors
    are the floats that the kernels read. Vertex colours are not rounded to 16 bits.
    - Filters of shadow rays weaken light by their exact transmittance, not by whole steps (1/64 stop
-     for those without textures and absorption, else 1/1024), unless `whole_stops` asks for it.
+     for those without textures and absorption, else 1/256), unless `whole_stops` asks for it.
    - All effects are there: params.all_effects, effects_added, tiles, load paths and numerics are
      ignored.
    As in the kernels, surfaces of two media touch if they do so within the rounding errors of
@@ -40,7 +40,7 @@ struct reference_params {
     whit_renderer_params picture;
     uint32_t thread_count; /* 0: one per core; the picture has the same bytes for any count */
     bool whole_stops;      /* rounds the light that each filter takes from a shadow ray to 1/64 or
-                              1/1024 stops, as kernels do (a stop is a factor of 2) */
+                              1/256 stops, as kernels do (a stop is a factor of 2) */
 };
 
 struct reference;

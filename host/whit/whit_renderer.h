@@ -404,7 +404,8 @@ typedef enum whit_trace_on {
    NaN is no limit. Cut-outs count as solid. `cost`: gets the cost of all
    rays together, or NULL (on the device it needs params.count). WHIT_ERROR_STATUS where the hits
    cannot be trusted, WHIT_ERROR_USAGE for what the renderer was not made for (no device, `count`
-   false), and on the device after a change of time that failed, until one succeeds;
+   false), and on the device after a change of time that failed halfway, until one
+   succeeds;
    WHIT_ERROR_CANCELLED; WHIT_ERROR_DEVICE on the device. */
 WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
                                   uint64_t count, bool any, whit_hit *hits, whit_cost *cost);

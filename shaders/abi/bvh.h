@@ -71,12 +71,12 @@ GPU_ASSERT_AT(gpu_triangle, shadow, 44)
 #define TRIANGLE_INSTANCE_SHIFT 8u /* flat tree: its instance is in the bits from here up */
 #define SHADOW_DEPTH_SCALE 64.0
 
-/* Sums of filters' depths along a shadow ray are in units of 1/1024 stop. A filter that nothing
+/* Sums of filters' depths along a shadow ray are in units of 1/256 stop. A filter that nothing
    passes has 160 stops, whose share is less than the least float above 0. */
-#define FILTER_DEPTH_SCALE  1024.0
-#define FILTER_DEPTH_OF_RECORD 16 /* 1/64 stop */
-#define FILTER_DEPTH_OPAQUE 163840.0
-#define FILTER_DEPTH_OF_ABSORPTION 1477.3197218702985 /* FILTER_DEPTH_SCALE / ln 2 */
+#define FILTER_DEPTH_SCALE  256.0
+#define FILTER_DEPTH_OF_RECORD 4 /* 1/64 stop */
+#define FILTER_DEPTH_OPAQUE 40960.0
+#define FILTER_DEPTH_OF_ABSORPTION 369.3299304675746 /* FILTER_DEPTH_SCALE / ln 2 */
 
 /* An instance of a mesh. t is the same in object and world space, as directions are not
    renormalised. The inverse is applied to (p - origin), never to p: so nothing cancels far from the

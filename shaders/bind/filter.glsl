@@ -1,5 +1,5 @@
 // Light that shadow rays lose in filters that vary over their surface: filters with textures or
-// vertex colours, and bodies that absorb. In 1/1024 stops, as integers, whose sum does not depend on
+// vertex colours, and bodies that absorb. In 1/256 stops, as integers, whose sum does not depend on
 // the order in which a ray hits the filters.
 #ifndef BIND_FILTER_GLSL
 #define BIND_FILTER_GLSL
@@ -22,8 +22,9 @@ float filter_end(vec3 origin, float t_max)
     return t_max < FLOAT_LARGEST ? min(t_max, behind) : 0.0;
 }
 
-// Depths from 2^29 on grow by 2^24 for each doubling, so that they do not overflow, and a surface
-// behind another still has another depth. Sums may wrap around and back.
+// Depths from 2^29 on (exp(-1.4e6)) grow by 2^24 for each doubling, so that they do not overflow, and
+// a surface behind another still has another depth. Sums may wrap around and back. There a float of
+// the way is off by a sixth of what exp(-1) stands for.
 const float DEPTH_LINEAR = 536870912.0, DEPTH_MAX = 2305843009213693952.0; // 2^29, 2^61
 
 ivec3 absorption_depth(vec3 absorption, float way)
@@ -50,7 +51,7 @@ vec3 surrounding_absorption(uvec4 media)
     return sum;
 }
 
-// The optical depth, in 1/1024 stops, of a filter that lets the share `kept` pass, rounded as in
+// The optical depth, in 1/256 stops, of a filter that lets the share `kept` pass, rounded as in
 // records of filters that do not vary; for a share of 0 nothing passes.
 ivec3 filter_depth(vec3 kept)
 {

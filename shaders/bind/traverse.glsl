@@ -11,7 +11,7 @@
 // its texture coordinates (sphere_uv), here and below.
 bool cutout_is_solid(uint instance, uint primitive, float u, float v);
 
-// Defined by the kernel: the optical depth, in units of 1/1024 stop, that a filter with
+// Defined by the kernel: the optical depth, in units of 1/256 stop, that a filter with
 // TRIANGLE_FILTER_DETAIL adds to a shadow ray that hits it from the front or from behind. `way`:
 // the distance from there to the filter_end of the ray. `own`: the depth in its record. A surface
 // where the ray enters or leaves a medium may add a negative depth; a sum below 0 counts as 0.

@@ -356,12 +356,18 @@ TEST_IN(faces_without_corners_are_dropped, fixture_begin, fixture_end)
 
 TEST_IN(faces_may_stand_in_front_of_vertices, fixture_begin, fixture_end)
 {
-    const struct scene_mesh *mesh = fixture_mesh(put_text(
-        "a.ply", "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
+    static const char *const ends[] = {"\n", ""};
+    for (int i = 0; i < 2; ++i) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
                  "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                 "end_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n"));
-    assert_int_equal(mesh->triangle_count, 1);
-    assert_float_equal(mesh->positions[3 * mesh->indices[1]], 1, 0);
+                 "end_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0%s",
+                 ends[i]);
+        const struct scene_mesh *mesh = fixture_mesh(put_text("a.ply", text));
+        assert_int_equal(mesh->triangle_count, 1);
+        assert_float_equal(mesh->positions[3 * mesh->indices[1]], 1, 0);
+    }
 }
 
 #define COLORS_HEADER(type, name)                                                                  \

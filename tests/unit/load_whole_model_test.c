@@ -622,6 +622,7 @@ TEST_IN(what_a_3mf_requires_is_not_left_out, fixture_begin, fixture_end)
     static const char colors[] = "requiredextensions='c'";
     static const char beams[] = "xmlns:b='http://x/beamlattice/' requiredextensions='c b'";
     load(write_3mf(colors, false));
+    load(write_3mf_with("requiredextensions = 'c'", false, "<!-- of x:path=here -->"));
     fixture_refused(write_3mf(beams, true),
                     "a.3mf: it requires the extension `b` (http://x/beamlattice/)");
     fixture_refused(write_3mf_with("", false, "<component p:path='/3D/o.model'/>"),

@@ -3,10 +3,10 @@
 #include "unit.h"
 
 static const double eye_height = 8.0, view = 0.6; /* see dark_scene */
-/* Depths of filters are rounded to multiples of 1/64 stop, those of absorption to 1/1024 stop, so
+/* Depths of filters are rounded to multiples of 1/64 stop, those of absorption to 1/256 stop, so
    that they are off by half of it at most. */
 static const double half_a_step = 0.5 / 64.0 * 0.69314718056,
-                    absorbed_half_a_step = 0.5 / 1024.0 * 0.69314718056;
+                    absorbed_half_a_step = 0.5 / 256.0 * 0.69314718056;
 
 /* The sun is at 45 degrees, so that the camera sees the shadow of the pane, but not the pane. */
 static struct scene *pane_scene(bool blends)
@@ -93,7 +93,7 @@ static struct scene *block_scene(const struct block *block, float density)
     return scene;
 }
 
-/* The share exp(-sigma length) of the light arrives, within 1/1024 stop for rounding at each end of
+/* The share exp(-sigma length) of the light arrives, within 1/256 stop for rounding at each end of
    the way through the glass. */
 TEST_BY_TURNS(bodies_absorb_along_the_way, 1, 4)
 {
@@ -124,6 +124,26 @@ TEST_BY_TURNS(bodies_absorb_along_the_way, 1, 4)
             assert_near(dark.pixels[c], 0.0, 1e-5);
         }
     }
+}
+
+/* The light that a thin body of 500 a unit takes is a difference of two depths of half a million.
+ */
+TEST(dense_bodies_keep_their_shadows)
+{
+    const whit_renderer_params params = {.width = 1,
+                                         .height = 1,
+                                         .depth = 4,
+                                         .camera = CAMERA_AT(3.9, 0.3, 0, 0, 0, 0, 0, 1, 0, 0.01)};
+    struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
+    struct scene_material m = matte(0, 0, 0);
+    set_rgb(m.transmission, 1, 1, 1);
+    set_rgb(m.absorption, 500, 500, 500);
+    m.ior = 1.0f;
+    add_object(scene, mesh_plane(20000), matte(1, 1, 1), 0, 0, 0);
+    add_object(scene, mesh_box(6, 0.01, 6), m, 0, 2, 0);
+    scene_put_lamp(scene, 0, 1000, 0, 1e6f);
+    own_image image = color_of(scene, NULL, &params);
+    assert_near(image.pixels[0], exp(-5), 0.1);
 }
 
 TEST_BY_TURNS(knobs_make_shadows_opaque, 2, 4)
