@@ -32,7 +32,7 @@ static bool is_return(uint32_t op)
     return op == OP_RETURN || op == OP_RETURN_VALUE;
 }
 
-/* Whether a function returns from within a loop or a switch. */
+/* Whether a function returns from within a loop or a switch, or has an OpUnreachable there. */
 static bool is_needed(const uint32_t *at)
 {
     uint32_t open[64], count = 0, selection = 0;
@@ -43,7 +43,7 @@ static bool is_needed(const uint32_t *at)
         if ((op == OP_LOOP_MERGE || op == OP_SWITCH) && count < sizeof open / sizeof *open)
             open[count++] = op == OP_SWITCH ? selection : at[1];
         selection = op == OP_SELECTION_MERGE ? at[1] : selection;
-        if (is_return(op) && count)
+        if ((is_return(op) || op == OP_UNREACHABLE) && count)
             return true;
     }
     return false;
@@ -133,22 +133,19 @@ static void put_phi(const struct returns *r, struct spv_module *m, const uint32_
     }
 }
 
-static void put_return(struct returns *r, struct spv_module *m, const uint32_t *words)
+/* Returns `value`, which a function without a result ignores. */
+static void put_return(struct returns *r, struct spv_module *m, uint32_t value)
 {
-    uint32_t b = spv_bool(m);
-    if (spv_op(words) == OP_RETURN_VALUE)
-        SPV_EMIT(m, OP_STORE, r->value, words[1]);
-    SPV_EMIT(m, OP_STORE, r->flag, spv_true(m, b));
-    put_way_out(r, m);
-}
-
-/* Replaces OpUnreachable by a return, since a loop that runs out of fuel may reach it. */
-static void put_end(struct returns *r, struct spv_module *m)
-{
-    if (r->is_void)
+    if (r->open_count) {
+        if (!r->is_void)
+            SPV_EMIT(m, OP_STORE, r->value, value);
+        SPV_EMIT(m, OP_STORE, r->flag, spv_true(m, spv_bool(m)));
+        put_way_out(r, m);
+    } else if (r->is_void) {
         spv_emit(m, OP_RETURN, NULL, 0);
-    else
-        SPV_EMIT(m, OP_RETURN_VALUE, spv_null(m, m->return_type));
+    } else {
+        SPV_EMIT(m, OP_RETURN_VALUE, value);
+    }
 }
 
 static void take(struct returns *r, struct spv_module *m, const uint32_t *words)
@@ -163,9 +160,9 @@ static void take(struct returns *r, struct spv_module *m, const uint32_t *words)
     } else if (r->needed && op == OP_PHI) {
         put_phi(r, m, words);
     } else if (r->needed && is_return(op) && r->open_count) {
-        put_return(r, m, words);
-    } else if (op == OP_UNREACHABLE) {
-        put_end(r, m);
+        put_return(r, m, r->is_void ? 0 : words[1]);
+    } else if (op == OP_UNREACHABLE) { /* a loop that runs out of fuel may reach it */
+        put_return(r, m, r->is_void ? 0 : spv_null(m, m->return_type));
     } else {
         if (r->needed && (op == OP_LOOP_MERGE || op == OP_SWITCH))
             push(r, m, op == OP_SWITCH ? r->selection : words[1]);

@@ -117,6 +117,12 @@ static const struct {
     {"mat2 g(int n) { for (int i = 0; ; i++) { if (i == n) return mat2(float(i)); } }\n"
      "float f(float x, int n) { return g(n)[1][1] + (n > 1 && x > 1.0 || n == 0 ? 1.0 : 0.0); }\n",
      {1, 1, 3, 4, 5}},
+    {"float f(float x, int n) { switch (n) { case 0: for (;;) { if (x > 12.0) return x; x++; }\n"
+     " default: return x + 20.0; } }\n",
+     {13, 30, 30, 30, 30}},
+    {"float f(float x, int n) { switch (n) { case 0: { switch (int(x)) { case 10: return 1.0;\n"
+     " default: return 3.0; } } default: return 2.0; } }\n",
+     {1, 2, 2, 2, 2}},
 };
 
 TEST_IN(loops_are_left_by_returns, compiler_begin, compiler_end)
