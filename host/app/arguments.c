@@ -366,13 +366,25 @@ bool cli_same_file(const char *a, const char *b)
     return S_ISREG(first.st_mode) && are_same(&first, &second);
 }
 
+/* Whether `path` is a name that numbers in place of the `#` of `pattern` may give, or another
+   pattern of such names. */
+static bool is_numbered(const char *pattern, const char *path)
+{
+    size_t before = strcspn(pattern, "#"), hashes = strspn(pattern + before, "#");
+    if (hashes == 0 || strncmp(pattern, path, before) != 0)
+        return false;
+    size_t digits = strspn(path + before, "#0123456789");
+    return digits > 0 && strcmp(path + before + digits, pattern + before + hashes) == 0;
+}
+
 bool cli_check_apart(struct cli_reader *reader, const struct cli_file *files, uint32_t count)
 {
     for (uint32_t i = 0; i < count; ++i) {
         for (uint32_t k = 0; k < i; ++k) {
             const struct cli_file *a = &files[k], *b = &files[i];
             if ((a->written || b->written) && a->path && b->path && !is_input(b->path) &&
-                cli_same_file(a->path, b->path))
+                (cli_same_file(a->path, b->path) || (a->written && is_numbered(a->path, b->path)) ||
+                 (b->written && is_numbered(b->path, a->path))))
                 return cli_misuse(reader, "%s: %s and %s name the same file", b->path, a->name,
                                   b->name);
         }

@@ -86,6 +86,10 @@ refuse 2 "probe over its sky" "--json and --environment name the same file" \
 refuse 2 "hard over its scene" "SCENE and --json name the same file" hard link --json c.json
 refuse 2 "scene over its scene" "SCENE and --triangles name the same file" scene c.json --triangles link
 refuse 2 "render over its recipe" "-o and --recipe name the same file" render c.json --recipe a.png -o ./a.png
+refuse 2 "a frame over the sky" "sky.1.exr: -o and --environment name the same file" \
+    render "$SCENES/spin.json" --frames 0-1 --environment sky.1.exr -o sky.#.exr
+refuse 2 "frames over frames" "-o and --ids name the same file" \
+    render "$SCENES/spin.json" --frames 0-1 -o p.#.exr --ids p.##.exr
 refuse 2 "bench over its model" "MODEL and --json name the same file" bench look c.json --json c.json
 refuse 2 "bench: one file for two" "--json and --plot name the same file" bench rays --json x --plot ./x
 refuse 2 "a dump over the shader" "./hit.comp: is a file of the shader" shader hit.comp --dump .
