@@ -401,8 +401,7 @@ static bool check_files(struct cli_reader *reader, const void *own, const struct
     const char *shader = settings ? settings->shader : "",
                *sky = settings ? settings->environment : "";
     uint32_t count = 0;
-    /* The arguments as help names them: `[SCENE] [options]`, `A B [options]`, `[BENCH] [MODEL
-     * ...]`. */
+    /* Help names the arguments: `[SCENE] [options]`, `A B [options]`, `[BENCH] [MODEL...]`. */
     char first[NAME_BYTES] = "", second[NAME_BYTES] = "";
     const char *words = reader->command->arguments;
     if (sscanf(words + (words[0] == '['), "%31[A-Z]%*[] []%31[A-Z]", first, second) < 2)
