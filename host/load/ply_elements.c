@@ -465,7 +465,7 @@ static void put(struct output *to, const uint8_t *from, size_t count)
     to->used += count;
 }
 
-/* Where a word, which the line [at, next) has, stands in it. */
+/* Returns the place of a word that the line [at, next) contains. */
 static const char *find_word(const uint8_t *data, size_t at, size_t next, const char *word)
 {
     return memmem(data + at, next - at, word, strlen(word)); /* there may be zero bytes */

@@ -16,9 +16,10 @@ WHIT_CHECK whit_result ply_check(const whit_log *log, const char *path, const ui
    before and after. Damaged strips are logged. */
 WHIT_CHECK whit_result ply_replace_strips(const whit_log *log, const char *path, uint8_t **data,
                                           size_t *size_bytes);
-/* What whit itself reads of a PLY's colours. texture: the picture that the header names, to free(),
-   or NULL. A number of a vertex colour is scale times assimp's one plus offset, which assimp gets
-   wrong for all integers but bytes without a sign; [0]: red, green, blue, [1]: alpha. */
+/* The parts of a PLY's colours that whit reads itself. texture: the picture that the header names,
+   to free(), or NULL. A number of a vertex colour is scale times assimp's one plus offset, which
+   assimp gets wrong for all integers but bytes without a sign; [0]: red, green, blue, [1]: alpha.
+ */
 struct ply_paint {
     char *texture;
     bool more_textures; /* the header names others, which are not drawn */

@@ -1,4 +1,4 @@
-/* What a COLLADA or FBX file states and assimp 5.2 leaves out without a word. */
+/* Finds statements of COLLADA and FBX files that assimp 5.2 leaves out without a word. */
 #ifndef LOAD_UNREAD_H
 #define LOAD_UNREAD_H
 

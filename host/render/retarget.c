@@ -67,7 +67,7 @@ whit_result renderer_set_view(struct renderer *renderer, const whit_renderer_par
     whit_result result = params_check(&renderer->log, &wanted);
     if (result == WHIT_OK)
         result = hooks_check_step_aov(renderer, wanted.step_aov);
-    /* What an earlier change left half done is done again, whatever the parameters say. */
+    /* A change that failed halfway is made again, even if the parameters are the same. */
     bool redo = renderer->between_times || renderer->between_views;
     bool moved = redo || wanted.time_s != renderer->params.time_s;
     if (result == WHIT_OK && !moved)

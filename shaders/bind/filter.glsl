@@ -23,8 +23,8 @@ float filter_end(vec3 origin, float t_max)
 }
 
 // Depths from 2^29 on (exp(-1.4e6)) grow by 2^24 for each doubling, so that they do not overflow, and
-// a surface behind another still has another depth. Sums may wrap around and back. There a float of
-// the way is off by a sixth of what exp(-1) stands for.
+// a surface behind another still has another depth. Sums may wrap around and back. There one
+// rounding of the way changes the light by a sixth.
 const float DEPTH_LINEAR = 536870912.0, DEPTH_MAX = 2305843009213693952.0; // 2^29, 2^61
 
 ivec3 absorption_depth(vec3 absorption, float way)
