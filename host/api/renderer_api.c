@@ -343,8 +343,6 @@ static void trace_batch(void *context, uint32_t index)
         .numerics = (uint32_t)trace->renderer->params.numerics,
         .any = trace->any,
         .brute = trace->brute,
-        .skip_instance = HIT_NONE,
-        .skip_primitive = HIT_NONE,
     };
     for (uint64_t i = first; i < end; ++i) {
         if ((i & 63) == 0 && cancelled(trace->renderer))

@@ -48,18 +48,10 @@ static void exact_chunk(void *context, uint32_t chunk)
     rational_destroy(rational);
 }
 
-static struct traverse_params level_params(uint32_t numerics)
-{
-    return (struct traverse_params){.order = ORDER_DISTANCE,
-                                    .numerics = numerics,
-                                    .skip_instance = HIT_NONE,
-                                    .skip_primitive = HIT_NONE};
-}
-
 static void twin_chunk(void *context, uint32_t chunk)
 {
     struct tracing *t = context;
-    const struct traverse_params params = level_params(t->numerics);
+    const struct traverse_params params = {.numerics = t->numerics};
     for (uint64_t i = (uint64_t)chunk * CHUNK; i < chunk_end(chunk, t->count); ++i)
         traverse_ray(t->hard->accel, &params, &t->rays[i].ray, &t->hits[i], NULL,
                      &t->failed[chunk]);
@@ -249,11 +241,9 @@ static bool is_double(const struct hard_judgement *j, struct rational *rational,
     const struct gpu_hit *hit = &j->hits[i];
     const struct rational_hit own = {.primitive = hit->primitive, .instance = hit->instance};
     const struct rational_query query = {.own = &own};
-    struct traverse_params params = level_params(j->numerics);
+    const struct traverse_params params = {.numerics = j->numerics, .own = hit};
     struct gpu_hit next;
     struct rational_hit exact;
-    params.skip_instance = hit->instance;
-    params.skip_primitive = hit->primitive;
     traverse_ray(j->hard->accel, &params, &j->rays[i].ray, &next, NULL, status);
     if (next.primitive == HIT_NONE || !is_together(hit->t, next.t, TOGETHER))
         return false;

@@ -94,12 +94,13 @@ static bool look_around(const struct accel *accel, const float eye[3], int direc
         ray.dir[k] = directions[direction][k];
     }
     struct gpu_hit hit;
+    const struct traverse_params next = {.behind = &hit};
     uint32_t status = 0;
     /* At an edge both triangles are met; they count as one crossing. */
     uint32_t last_instance = SCENE_NONE, last_material = SCENE_NONE;
     float last_t = 0.0f;
     bool last_left = false;
-    traverse_next_float(accel, &ray, NULL, &hit, &status);
+    traverse_ray(accel, NULL, &ray, &hit, NULL, &status);
     for (int hits = 0; hit.primitive != HIT_NONE && hits < HITS_MAX; ++hits) {
         const struct scene_mesh *mesh = &scene->meshes[scene->instances[hit.instance].mesh];
         uint32_t material = mesh->materials[hit.primitive];
@@ -119,7 +120,7 @@ static bool look_around(const struct accel *accel, const float eye[3], int direc
             last_t = hit.t;
             last_left = left;
         }
-        traverse_next_float(accel, &ray, &hit, &hit, &status);
+        traverse_ray(accel, &next, &ray, &hit, NULL, &status);
     }
     return true;
 }

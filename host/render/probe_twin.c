@@ -103,10 +103,10 @@ static void ask_twin(struct asking *a)
     struct probe_ray *ray = a->ray;
     const struct gpu_probe_ray *traced = &ray->traced;
     const whit_renderer_params *params = &a->renderer->params;
-    const struct traverse_params walk = {.order = (uint32_t)params->traversal,
-                                         .numerics = params->numerics,
-                                         .skip_instance = traced->skip_instance,
-                                         .skip_primitive = traced->skip_primitive};
+    const struct gpu_hit own = {.instance = traced->skip_instance,
+                                .primitive = traced->skip_primitive};
+    struct traverse_params walk = {
+        .order = (uint32_t)params->traversal, .numerics = params->numerics, .own = &own};
     uint32_t status = 0;
     struct gpu_hit hit, first = {.t = INFINITY, .primitive = HIT_NONE, .instance = HIT_NONE};
     traverse_ray(a->renderer->accel, &walk, &a->line, &hit, NULL, &status);
@@ -118,7 +118,8 @@ static void ask_twin(struct asking *a)
             break;
         if (first.primitive == HIT_NONE)
             pass(a, &hit);
-        traverse_next(a->renderer->accel, &walk, &a->line, &hit, &hit, &status);
+        walk.behind = &hit;
+        traverse_ray(a->renderer->accel, &walk, &a->line, &hit, NULL, &status);
     }
     if (hit.primitive != HIT_NONE && is_device_hit(traced, &hit)) {
         ray->twin = hit;

@@ -128,7 +128,7 @@ static void measure_line(const struct measuring *measuring, uint32_t index, stru
     uint64_t random = (uint64_t)index << 20;
     struct gpu_ray ray = random_line(&mesh->box, &random);
     struct gpu_hit hit;
-    traverse_float(&alone, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, cost, status);
+    traverse_ray(&alone, NULL, &ray, &hit, cost, status);
 }
 
 static void measure_task(void *context, uint32_t index)

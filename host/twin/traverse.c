@@ -431,20 +431,6 @@ static void set_normal(struct gpu_hit *hit, const struct accel *accel, uint32_t 
     hit->ng_z = n.z;
 }
 
-static void begin_hit(struct gpu_hit *hit, float t_max)
-{
-    *hit = (struct gpu_hit){
-        .t = t_max < FLT_MAX ? t_max : FLT_MAX, .primitive = HIT_NONE, .instance = HIT_NONE};
-}
-
-static void end_hit(struct gpu_hit *hit, const struct accel *accel, uint32_t record)
-{
-    if (hit->primitive == HIT_NONE)
-        hit->t = INFINITY;
-    else
-        set_normal(hit, accel, record);
-}
-
 static void add_cost(const struct gpu_cost *from, struct gpu_cost *to)
 {
     to->rays += from->rays;
@@ -489,95 +475,54 @@ static void begin_walk(struct walk *walk, const struct accel *accel,
                        const struct traverse_params *params, const struct gpu_ray *ray,
                        struct gpu_hit *hit)
 {
+    const struct gpu_hit none = {.primitive = HIT_NONE, .instance = HIT_NONE};
+    const struct gpu_hit *left_out = params->own ? params->own : &none;
     walk->accel = accel;
     walk->ray = ray;
     walk->order = params->order;
     walk->numerics = params->numerics;
     walk->any = params->any;
-    walk->next = false;
-    walk->hit_before = -INFINITY;
+    walk->next = params->behind != NULL;
+    left_out = walk->next ? params->behind : left_out;
+    walk->hit_before = walk->next ? left_out->t : -INFINITY;
+    walk->skip_instance = left_out->instance;
+    walk->skip_primitive = left_out->primitive;
     walk->t_min = ray->t_min;
     if (params->numerics == NUMERICS_EXACT && ray->t_min < 0.0f)
         walk->t_min = 0.0f;
-    walk->skip_instance = params->skip_instance;
-    walk->skip_primitive = params->skip_primitive;
     walk->hit = hit;
     walk->triangle = 0;
     walk->level = 0;
     walk->cost = (struct gpu_cost){.rays = 1};
     walk->status = 0;
-    begin_hit(hit, ray->t_max);
+    *hit = none;
+    hit->t = ray->t_max < FLT_MAX ? ray->t_max : FLT_MAX;
     walk->at_exit = false;
     walk->lo = hit->t;
     walk->hi = hit->t;
-}
-
-static void traverse_all(struct walk *walk, bool brute)
-{
-    if (!accel_ray_is_usable(walk->ray))
-        return;
-    if (brute)
-        traverse_records(walk);
-    else
-        traverse_trees(walk);
-    if (walk->numerics == NUMERICS_EXACT && !walk->any && walk->lo < walk->hi)
-        settle_hit(walk);
 }
 
 void traverse_ray(const struct accel *accel, const struct traverse_params *params,
                   const struct gpu_ray *ray, struct gpu_hit *hit, struct gpu_cost *cost,
                   uint32_t *status)
 {
+    static const struct traverse_params closest;
     struct walk walk;
+    params = params ? params : &closest;
     begin_walk(&walk, accel, params, ray, hit);
-    traverse_all(&walk, params->brute);
-    end_hit(hit, accel, walk.triangle);
+    if (accel_ray_is_usable(ray)) {
+        if (params->brute)
+            traverse_records(&walk);
+        else
+            traverse_trees(&walk);
+        if (walk.numerics == NUMERICS_EXACT && !walk.any && walk.lo < walk.hi)
+            settle_hit(&walk);
+    }
+    if (hit->primitive == HIT_NONE)
+        hit->t = INFINITY;
+    else
+        set_normal(hit, accel, walk.triangle);
     if (cost)
         add_cost(&walk.cost, cost);
     *status |= walk.status;
-}
-
-void traverse_float(const struct accel *accel, uint32_t order, const struct gpu_ray *ray, bool any,
-                    uint32_t skip_instance, uint32_t skip_primitive, struct gpu_hit *hit,
-                    struct gpu_cost *cost, uint32_t *status)
-{
-    const struct traverse_params params = {.order = order,
-                                           .any = any,
-                                           .skip_instance = skip_instance,
-                                           .skip_primitive = skip_primitive};
-    traverse_ray(accel, &params, ray, hit, cost, status);
-}
-
-void traverse_next(const struct accel *accel, const struct traverse_params *params,
-                   const struct gpu_ray *ray, const struct gpu_hit *before, struct gpu_hit *hit,
-                   uint32_t *status)
-{
-    struct walk walk;
-    struct gpu_hit found;
-    begin_walk(&walk, accel, params, ray, &found);
-    if (before) {
-        walk.next = true;
-        walk.hit_before = before->t;
-        walk.skip_instance = before->instance;
-        walk.skip_primitive = before->primitive;
-    }
-    traverse_all(&walk, params->brute);
-    end_hit(&found, accel, walk.triangle);
-    *hit = found;
-    *status |= walk.status;
-}
-
-void traverse_next_float(const struct accel *accel, const struct gpu_ray *ray,
-                         const struct gpu_hit *before, struct gpu_hit *hit, uint32_t *status)
-{
-    const struct traverse_params params = {.skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
-    traverse_next(accel, &params, ray, before, hit, status);
-}
-
-void traverse_brute_float(const struct accel *accel, const struct gpu_ray *ray, struct gpu_hit *hit)
-{
-    const struct traverse_params params = {
-        .brute = true, .skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
-    uint32_t status = 0;
-    traverse_ray(accel, &params, ray, hit, NULL, &status);
 }

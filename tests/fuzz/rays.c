@@ -33,11 +33,12 @@ static void prepare(void)
 static void check_sequence(const struct accel *accel, const struct gpu_ray *ray)
 {
     struct gpu_hit hit, before;
+    const struct traverse_params next = {.behind = &before};
     uint32_t status = 0;
-    traverse_next_float(accel, ray, NULL, &hit, &status);
+    traverse_ray(accel, NULL, ray, &hit, NULL, &status);
     for (int i = 0; i < HITS_MAX && hit.primitive != HIT_NONE; i++) {
         before = hit;
-        traverse_next_float(accel, ray, &before, &hit, &status);
+        traverse_ray(accel, &next, ray, &hit, NULL, &status);
         fuzz_check(hit.primitive == HIT_NONE || hit.t >= before.t, "%a behind %a", (double)hit.t,
                    (double)before.t);
         fuzz_check(memcmp(&hit, &before, sizeof hit) != 0, "the same hit again, at %a",

@@ -141,14 +141,17 @@ void fuzz_check_ray(const struct accel *accel, const struct gpu_ray *ray)
 {
     struct gpu_hit brute;
     bool bad = is_bad(ray), same = bad || is_ordinary(ray);
-    traverse_brute_float(accel, ray, &brute);
+    struct traverse_params params = {.brute = true};
+    uint32_t status = 0;
+    traverse_ray(accel, &params, ray, &brute, NULL, &status);
     fuzz_check(!bad || brute.primitive == HIT_NONE, "a bad ray hits primitive %u at %a",
                brute.primitive, (double)brute.t);
     for (uint32_t order = ORDER_DISTANCE; order <= ORDER_BASIC; order++) {
         struct gpu_hit closest, any;
-        uint32_t status = 0;
-        traverse_float(accel, order, ray, false, HIT_NONE, HIT_NONE, &closest, NULL, &status);
-        traverse_float(accel, order, ray, true, HIT_NONE, HIT_NONE, &any, NULL, &status);
+        params = (struct traverse_params){.order = order};
+        traverse_ray(accel, &params, ray, &closest, NULL, &status);
+        params.any = true;
+        traverse_ray(accel, &params, ray, &any, NULL, &status);
         fuzz_check(status == 0, "status %#x", status);
         if (!same)
             continue;

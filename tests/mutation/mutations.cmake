@@ -281,7 +281,7 @@ change(shaders/lib/exact.glsl [[t_error = weights_error * (z_hi - z_lo) + z_erro
   [[t_error = 0.0 * z_error;]])
 
 mutation(keys_unrounded accel_hard RED cases_are_what_they_say)
-change(host/twin/traverse.c traverse_all [[[a-z]+->lo < [a-z]+->hi]] [[false]])
+change(host/twin/traverse.c traverse_ray [[[a-z]+\.lo < [a-z]+\.hi]] [[false]])
 
 mutation(boxes_near_denormals hard_tree RED keys_at_the_ends_of_floats_do_not_depend_on_the_tree)
 change(host/twin/traverse.c enters [[bits -= NEAR_STEPS]] [[bits -= 0]])

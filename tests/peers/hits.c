@@ -111,8 +111,7 @@ static void compare_ray(const struct comparison *c, uint64_t i, struct tally *ta
 {
     struct gpu_hit twin;
     struct oracle_hit exact;
-    traverse_float(c->accel, ORDER_DISTANCE, &c->rays[i], false, HIT_NONE, HIT_NONE, &twin, NULL,
-                   &tally->status);
+    traverse_ray(c->accel, NULL, &c->rays[i], &twin, NULL, &tally->status);
     oracle_trace(c->accel, &c->rays[i], false, &exact);
     tally->hits += twin.primitive != HIT_NONE;
     tally->device_differs += memcmp(&twin, &c->device[i], sizeof twin) != 0;
@@ -178,7 +177,7 @@ static void print_ray(const struct comparison *c, uint64_t i, const char *what)
     struct gpu_hit twin, peer;
     struct oracle_hit exact;
     uint32_t status = 0;
-    traverse_float(c->accel, ORDER_DISTANCE, ray, false, HIT_NONE, HIT_NONE, &twin, NULL, &status);
+    traverse_ray(c->accel, NULL, ray, &twin, NULL, &status);
     oracle_trace(c->accel, ray, false, &exact);
     printf("  %s: ray %llu from %.9g %.9g %.9g along %.9g %.9g %.9g\n", what, (unsigned long long)i,
            (double)ray->origin[0], (double)ray->origin[1], (double)ray->origin[2],

@@ -366,13 +366,12 @@ static inline struct vec3 point_of_record(const struct accel *accel, uint32_t in
 
 /* ---- Hits ---- */
 
-/* params.skip_*: nothing is skipped. `cost` may be NULL. */
+/* `cost` may be NULL. */
 static inline struct gpu_hit trace_with(const struct accel *accel, struct traverse_params params,
                                         const struct gpu_ray *ray, struct gpu_cost *cost)
 {
     struct gpu_hit hit;
     uint32_t status = 0;
-    params.skip_instance = params.skip_primitive = HIT_NONE;
     traverse_ray(accel, &params, ray, &hit, cost, &status);
     assert_int_equal(status, 0);
     return hit;
@@ -381,7 +380,13 @@ static inline struct gpu_hit trace_with(const struct accel *accel, struct traver
 /* The closest hit at NUMERICS_WATERTIGHT. */
 static inline struct gpu_hit trace(const struct accel *accel, const struct gpu_ray *ray)
 {
-    return trace_with(accel, (struct traverse_params){.order = ORDER_DISTANCE}, ray, NULL);
+    return trace_with(accel, (struct traverse_params){0}, ray, NULL);
+}
+
+/* The same without any tree, by testing every primitive of every instance. */
+static inline struct gpu_hit trace_brute(const struct accel *accel, const struct gpu_ray *ray)
+{
+    return trace_with(accel, (struct traverse_params){.brute = true}, ray, NULL);
 }
 
 static inline bool hits_equal(const struct gpu_hit *a, const struct gpu_hit *b)

@@ -114,8 +114,8 @@ TEST(builders_agree_bit_for_bit)
                     accel->record_count > accel->triangle_count);
         for (uint32_t i = 0; i < cases_of(600); ++i) {
             struct gpu_ray ray = random_ray();
-            struct gpu_hit x = trace(first.accel, &ray), y = trace(accel, &ray), z;
-            traverse_brute_float(accel, &ray, &z);
+            struct gpu_hit x = trace(first.accel, &ray), y = trace(accel, &ray),
+                           z = trace_brute(accel, &ray);
             assert_memory_equal(&x, &y, sizeof x);
             assert_memory_equal(&x, &z, sizeof x);
         }

@@ -109,10 +109,9 @@ static void compare_with_twin(const struct world *world, const struct gpu_ray *r
                               struct tally *tally)
 {
     struct oracle_hit exact;
-    struct gpu_hit hit, by_tree = trace(world->accel, ray);
     struct accel bare = without_nodes(world);
+    struct gpu_hit hit = trace_brute(&bare, ray), by_tree = trace(world->accel, ray);
     oracle_trace(world->accel, ray, false, &exact);
-    traverse_brute_float(&bare, ray, &hit);
     assert_true(same_ids(&by_tree, &hit));
     bool differ = hit.primitive != exact.primitive || hit.instance != exact.instance;
     ++tally->rays;

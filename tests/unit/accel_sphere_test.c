@@ -37,7 +37,6 @@ static void leave(const struct accel *accel, const float *sphere, uint32_t primi
                   struct own *own)
 {
     struct gpu_ray ray = {.t_max = INFINITY};
-    struct gpu_hit hit;
     double n[3], length = 0.0, t, error, cosine, deep;
     for (int k = 0; k < 3; ++k) {
         n[k] = sphere_random();
@@ -50,8 +49,8 @@ static void leave(const struct accel *accel, const float *sphere, uint32_t primi
         ray.origin[k] = (float)((double)sphere[k] + arm + (n[k] > 0.0 ? off : -off));
         ray.dir[k] = (float)sphere_random();
     }
-    uint32_t status = 0;
-    traverse_float(accel, ORDER_DISTANCE, &ray, false, 0, primitive, &hit, NULL, &status);
+    const struct gpu_hit start = {.primitive = primitive};
+    struct gpu_hit hit = trace_with(accel, (struct traverse_params){.own = &start}, &ray, NULL);
     bool wanted = meets_own(sphere, &ray, &t, &error, &cosine, &deep);
     /* So close to 0 the sign of the cosine, a sum of three rounded products, is not certain. */
     if (fabs(cosine) < 8.0 * 0x1p-24)

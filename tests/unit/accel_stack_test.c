@@ -72,9 +72,7 @@ TEST(too_deep_trees_are_reported)
         struct gpu_ray ray = caterpillar_ray(STACK_SIZE + 1, true);
         struct gpu_hit hit;
         const struct traverse_params params = {.order = way % ORDERS,
-                                               .numerics = levels[way / ORDERS],
-                                               .skip_instance = HIT_NONE,
-                                               .skip_primitive = HIT_NONE};
+                                               .numerics = levels[way / ORDERS]};
         traverse_ray(accel, &params, &ray, &hit, NULL, &status);
         assert_int_equal(status, STATUS_NODE_STACK_OVERFLOW);
     }
@@ -152,8 +150,7 @@ TEST(flat_records_name_their_instance)
 {
     own_accel *accel = caterpillar(1);
     struct gpu_ray ray = {.origin = {0, 0, -1}, .dir = {0, 0, 1}, .t_max = INFINITY};
-    struct gpu_hit plain = trace(accel, &ray), brute;
-    uint32_t status = 0;
+    struct gpu_hit plain = trace(accel, &ray);
     accel->single_identity = false;
     accel->flat = true;
     accel->meshes[0].root = accel->nodes[0].first;
@@ -162,12 +159,11 @@ TEST(flat_records_name_their_instance)
     caterpillar_box(0, 0, &accel->nodes[2]);
     accel->triangles[0].flags = 7u << TRIANGLE_INSTANCE_SHIFT;
     accel->triangles[1].flags = 5u << TRIANGLE_INSTANCE_SHIFT | TRIANGLE_MIRRORED;
-    struct gpu_hit hit = trace(accel, &ray);
-    traverse_brute_float(accel, &ray, &brute);
+    struct gpu_hit hit = trace(accel, &ray), brute = trace_brute(accel, &ray);
     assert_int_equal(hit.instance, 5);
     assert_true(hit.ng_z == -plain.ng_z && plain.ng_z != 0.0f);
     assert_memory_equal(&hit, &brute, sizeof hit);
-    traverse_float(accel, ORDER_DISTANCE, &ray, false, 5, 0, &hit, NULL, &status);
+    hit = trace_with(accel, (struct traverse_params){.own = &brute}, &ray, NULL);
     assert_int_equal(hit.instance, 7);
     assert_true(hit.ng_z == plain.ng_z);
 }

@@ -160,16 +160,13 @@ static struct gpu_ray ray_of_line(const struct line *line)
 static void mark_hits(const struct level *level, const struct accel *accel,
                       const struct gpu_ray *ray, uint8_t *marks)
 {
-    const struct traverse_params params = {
-        .numerics = level->numerics, .skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
-    struct gpu_hit hit;
-    uint32_t status = 0;
-    for (traverse_next(accel, &params, ray, NULL, &hit, &status); hit.primitive != HIT_NONE;
-         traverse_next(accel, &params, ray, &hit, &hit, &status)) {
+    struct traverse_params params = {.numerics = level->numerics};
+    struct gpu_hit hit = trace_with(accel, params, ray, NULL);
+    params.behind = &hit;
+    for (; hit.primitive != HIT_NONE; hit = trace_with(accel, params, ray, NULL)) {
         assert_int_equal(marks[hit.primitive], 0); /* none twice */
         marks[hit.primitive] = 1;
     }
-    assert_int_equal(status, 0);
 }
 
 static void count_crossings(const struct soup *soup, const struct seen *seen,

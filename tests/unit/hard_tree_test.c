@@ -141,19 +141,14 @@ TEST(keys_at_the_ends_of_floats_do_not_depend_on_the_tree)
     for (uint32_t i = 0; i < 20000; ++i) {
         struct vec3 target = point_of_record(world.accel, i % 2), from = random_point(1.0f);
         struct gpu_ray ray = {.t_max = INFINITY};
-        struct gpu_hit tree, brute;
-        uint32_t status = 0;
         double t = i % 4 < 2 ? ldexp(1.0 + (double)random_below(&random_state, 4), -149)
                              : (double)FLT_MAX * (1.0 - 0x1p-24 * random_below(&random_state, 8));
         float scale = i % 4 < 2 ? 0x1p-24f : 0x1p20f; /* so that directions stay floats */
         vec3_store(ray.origin, vec3_add(target, vec3_scale(from, scale)));
         for (int k = 0; k < 3; ++k)
             ray.dir[k] = (float)(((double)(&target.x)[k] - (double)ray.origin[k]) / t);
-        struct traverse_params params = {
-            .numerics = NUMERICS_EXACT, .skip_instance = HIT_NONE, .skip_primitive = HIT_NONE};
-        traverse_ray(world.accel, &params, &ray, &tree, NULL, &status);
-        params.brute = true;
-        traverse_ray(world.accel, &params, &ray, &brute, NULL, &status);
+        struct gpu_hit tree = level_trace(&levels[1], world.accel, ORDER_DISTANCE, false, &ray),
+                       brute = level_brute(&levels[1], world.accel, &ray);
         met += brute.primitive != HIT_NONE;
         other += !hits_equal(&tree, &brute);
     }

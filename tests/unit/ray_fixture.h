@@ -96,11 +96,8 @@ static inline struct unlike trace_beside_twin(const struct fixture *f, bool any,
                                               struct gpu_hit *hits, whit_cost *sum)
 {
     const whit_renderer_params *params = &f->renderer->params;
-    const struct traverse_params twin = {.order = (uint32_t)params->traversal,
-                                         .numerics = params->numerics,
-                                         .any = any,
-                                         .skip_instance = HIT_NONE,
-                                         .skip_primitive = HIT_NONE};
+    const struct traverse_params twin = {
+        .order = (uint32_t)params->traversal, .numerics = params->numerics, .any = any};
     own_memory struct gpu_cost *costs = params->count ? array_alloc(count, sizeof *costs) : NULL;
     struct unlike unlike = {0};
     uint32_t status = 0;

@@ -24,11 +24,10 @@ static void check_hits(struct fixture *f, const struct accel *trees)
     for (uint32_t i = 0; i < RAYS; ++i) {
         struct gpu_hit twin, tree, brute;
         struct gpu_cost cost = {0};
-        traverse_float(f->accel, ORDER_DISTANCE, &rays[i], false, HIT_NONE, HIT_NONE, &twin, &cost,
-                       &status);
-        traverse_float(trees, ORDER_DISTANCE, &rays[i], false, HIT_NONE, HIT_NONE, &tree, NULL,
-                       &status);
-        traverse_brute_float(f->accel, &rays[i], &brute);
+        traverse_ray(f->accel, NULL, &rays[i], &twin, &cost, &status);
+        traverse_ray(trees, NULL, &rays[i], &tree, NULL, &status);
+        traverse_ray(f->accel, &(struct traverse_params){.brute = true}, &rays[i], &brute, NULL,
+                     &status);
         assert_memory_equal(&tree, &hits[i], sizeof tree);
         assert_memory_equal(&brute, &hits[i], sizeof brute);
         /* All triangles share one box, and no hit lies before it that would rule it out: a ray
@@ -113,8 +112,8 @@ static whit_result trace_stack(const struct fixture *f, uint32_t count)
             return result;
         for (int i = 0; i < 16; ++i) {
             uint32_t status = 0;
-            traverse_float(f->accel, ORDER_DISTANCE, &rays[i], any, HIT_NONE, HIT_NONE, &twin, NULL,
-                           &status);
+            traverse_ray(f->accel, &(struct traverse_params){.any = any}, &rays[i], &twin, NULL,
+                         &status);
             if (!any)
                 assert_memory_equal(&hits[i], &twin, sizeof twin);
             assert_int_equal(twin.primitive == HIT_NONE, i == 15);

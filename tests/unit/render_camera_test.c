@@ -349,8 +349,7 @@ TEST(sizes_may_be_odd)
             struct gpu_hit hit;
             camera_ray(&f.renderer->frame, CAMERA_PERSPECTIVE, p % params.width, p / params.width,
                        &sample, &ray);
-            traverse_float(f.accel, ORDER_DISTANCE, &ray, false, HIT_NONE, HIT_NONE, &hit, NULL,
-                           &status);
+            traverse_ray(f.accel, NULL, &ray, &hit, NULL, &status);
             bad += hit.primitive != picture.ids.words[2 * p + 1];
             hits += hit.primitive != HIT_NONE;
         }

@@ -256,6 +256,7 @@ static void check_primary(const struct fixture *f, const struct counted *counted
 {
     const struct gpu_cost *costs = costs_of(counted, RAY_PRIMARY);
     const struct image *ids = &counted->picture.ids;
+    const struct traverse_params order = {.order = (uint32_t)f->renderer->params.traversal};
     uint32_t bad = 0, ids_bad = 0, status = 0;
     struct gpu_chunk first;
     camera_sample(&f->renderer->frame, 0, &first);
@@ -264,8 +265,7 @@ static void check_primary(const struct fixture *f, const struct counted *counted
         struct gpu_hit hit;
         struct gpu_cost cost = {0};
         camera_ray(&f->renderer->frame, kind, i % ids->width, i / ids->width, &first, &ray);
-        traverse_float(f->accel, (uint32_t)f->renderer->params.traversal, &ray, false, HIT_NONE,
-                       HIT_NONE, &hit, &cost, &status);
+        traverse_ray(f->accel, &order, &ray, &hit, &cost, &status);
         bad += memcmp(&cost, &costs[i], sizeof cost) != 0;
         ids_bad += hit.primitive != ids->words[2 * i + 1] || hit.instance != ids->words[2 * i];
     }

@@ -48,6 +48,7 @@ static void check_scene(struct scene *scene, const char *label)
     own_fixture f = fixture_open(scene, NULL, NULL);
     own_memory struct gpu_ray *rays = array_alloc(RAYS, sizeof *rays);
     own_memory struct gpu_hit *hits = array_alloc(RAYS, sizeof *hits);
+    uint32_t status = 0;
     assert_true(rays && hits);
     assert_int_equal(f.accel->single_identity, f.scene->instance_count == 1);
     aim_rays(&f, rays, RAYS, 7);
@@ -56,7 +57,8 @@ static void check_scene(struct scene *scene, const char *label)
         struct gpu_hit brute;
         if (i % 8 >= 4)
             continue;
-        traverse_brute_float(f.accel, &rays[i], &brute);
+        traverse_ray(f.accel, &(struct traverse_params){.brute = true}, &rays[i], &brute, NULL,
+                     &status);
         if (memcmp(&hits[i], &brute, sizeof brute) != 0)
             fail_msg("%s: tree unlike brute force at ray %u", label, i);
     }
@@ -385,8 +387,7 @@ TEST(cut_traversals_are_reported)
     for (int i = 0; i < 8; ++i)
         rays[i] = (struct gpu_ray){{0.8f, 0.2f, -1}, 0, {0, 0, 1}, INFINITY};
     struct gpu_cost counts = {0};
-    traverse_float(f.accel, ORDER_DISTANCE, &rays[0], false, HIT_NONE, HIT_NONE, &twin, &counts,
-                   &status);
+    traverse_ray(f.accel, NULL, &rays[0], &twin, &counts, &status);
     assert_int_equal(twin.primitive, HIT_NONE);
     assert_int_equal(counts.triangles, COUNT); /* the ray does test every triangle */
     whit_result result = renderer_trace(f.renderer, rays, 8, false, hits, NULL);

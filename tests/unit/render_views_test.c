@@ -42,9 +42,7 @@ static void check_distances(const struct fixture *f, const whit_camera *camera,
 {
     const struct renderer *r = f->renderer;
     const struct traverse_params params = {.order = (uint32_t)r->params.traversal,
-                                           .numerics = (uint32_t)r->params.numerics,
-                                           .skip_instance = HIT_NONE,
-                                           .skip_primitive = HIT_NONE};
+                                           .numerics = (uint32_t)r->params.numerics};
     bool exact = r->params.numerics == WHIT_NUMERICS_EXACT; /* shading uses the t of floats */
     size_t count = (size_t)view->width * view->height;
     own_memory struct gpu_ray *rays = malloc(count * sizeof *rays);
