@@ -7,7 +7,6 @@
 #include "hard/judge.h"
 #include "hard/mesh.h"
 #include "hard/rays.h"
-#include "hard/topology.h"
 #include "picture/camera.h"
 
 enum { RAYS_DEFAULT = 20000, RAYS_MAX = 1 << 24, SIDE_MAX = 65535, SEED = 77 };
@@ -15,7 +14,6 @@ enum { RAYS_DEFAULT = 20000, RAYS_MAX = 1 << 24, SIDE_MAX = 65535, SEED = 77 };
 struct whit_judge {
     whit_log log;
     struct hard_scene hard;
-    struct hard_topology topology;
     uint32_t threads;
     uint64_t count;
     struct hard_ray *rays;
@@ -96,8 +94,6 @@ static whit_result fill(whit_judge *judge, const whit_scene *scene, const whit_j
     result = hard_scene_borrow(&judge->log, scene->scene, params->time_s,
                                api_one_tree(scene, params->instances), &judge->hard);
     if (result == WHIT_OK)
-        result = hard_topology_init(scene->scene, &judge->topology);
-    if (result == WHIT_OK)
         result = make_rays(judge, params, wanted);
     if (result == WHIT_OK)
         result =
@@ -127,7 +123,6 @@ void whit_judge_destroy(whit_judge *judge)
 {
     if (!judge)
         return;
-    hard_topology_finish(&judge->topology);
     hard_scene_finish(&judge->hard);
     free(judge->rays);
     free(judge->plain);
@@ -188,7 +183,6 @@ whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics, con
                             whit_judgement *out)
 {
     const struct hard_judgement judgement = {.hard = &judge->hard,
-                                             .topology = &judge->topology,
                                              .rays = judge->rays,
                                              .exact = judge->exact,
                                              .hits = (const struct gpu_hit *)hits,

@@ -8,6 +8,7 @@
 #define HARD_HARD_H
 
 #include "base/affine.h"
+#include "hard/topology.h"
 #include "oracle/rational.h"
 #include "whit/whit_hard.h"
 
@@ -36,21 +37,22 @@ enum hard_truth {
 };
 
 enum hard_rays {
-    HARD_AIMED,   /* from around the middle at vertices and points of edges; for a fourth of them
-                     the origin has the target's coordinate on one axis or two */
-    HARD_AROUND,  /* as HARD_AIMED, from in and around the bounds, and also at points inside
-                     triangles */
+    HARD_AROUND,  /* from in and around the bounds, at vertices, at points of edges and at points
+                     inside triangles */
     HARD_AXIAL,   /* along an axis through vertices and points of edges; zero components have either
                      sign */
-    HARD_LATTICE, /* HARD_GRID: up and down through vertices, edges and diagonals */
-    HARD_CROSS,   /* HARD_CUBE: along axes and planes from points of its lattice */
     HARD_FLAT,    /* in a triangle's plane, along its edges and across */
     HARD_GRAZING, /* at a height of 2^-4 to 2^-24 above a triangle's plane */
     HARD_FAR,     /* from 2^6 to 2^12 times the scene's size away */
     HARD_LEAVING, /* away from the surface, from a point moved by its error bound, as secondary
                      rays */
+    HARD_MIXED_KINDS,
+    HARD_MIXED = HARD_MIXED_KINDS, /* those above in turn */
+    HARD_AIMED,   /* from around the middle at vertices and points of edges; for a fourth of them
+                     the origin has the target's coordinate on one axis or two */
+    HARD_LATTICE, /* HARD_GRID: up and down through vertices, edges and diagonals */
+    HARD_CROSS,   /* HARD_CUBE: along axes and planes from points of its lattice */
     HARD_LISTED,  /* HARD_ANCHORS: the rays of the bug reports */
-    HARD_MIXED,   /* around, axial, flat, grazing, far, leaving in turn */
     HARD_RAY_KINDS
 };
 
@@ -71,11 +73,11 @@ struct hard_scene {
     const struct scene *scene;
     struct scene *owned; /* equal to `scene` where this struct owns it; NULL: `scene` is borrowed */
     struct scene_pose pose;
+    struct hard_topology topology;
     struct accel *accel;
     bool flatten;               /* `accel` is a single tree over triangles transformed to world
                                    space and rounded */
     double middle[3], reach[3]; /* HARD_AIMED rays start within `reach` of `middle` on each axis */
-    double lo[3], hi[3];        /* bounds */
     enum hard_rays rays;
     enum hard_truth truth;
 };

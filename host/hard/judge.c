@@ -15,86 +15,84 @@
 
 enum { CHUNK = 1024 };
 
-static uint32_t chunks_of(uint64_t count)
-{
-    return (uint32_t)((count + CHUNK - 1) / CHUNK);
-}
-
 static uint64_t chunk_end(uint32_t chunk, uint64_t count)
 {
     uint64_t end = ((uint64_t)chunk + 1) * CHUNK;
     return end < count ? end : count;
 }
 
-/* ---- Exact and twin ---- */
-
-struct tracing {
+/* A run over rays in chunks, by several threads. */
+struct run {
     const struct hard_scene *hard;
     const struct hard_ray *rays;
     uint64_t count;
     uint32_t numerics;
     struct rational_hit *exact;
     struct gpu_hit *hits;
-    uint32_t *failed; /* of each chunk */
+    const struct hard_judgement *judgement;
+    struct part {
+        whit_result result;
+        whit_tally tally;
+    } * parts; /* one for each chunk */
+    whit_tally tally;
 };
+
+/* Calls `fn` for all chunks, which fill in their parts, and adds up the tallies. */
+static whit_result run_chunks(struct run *run, uint32_t thread_count,
+                              void (*fn)(void *context, uint32_t index), const char *failure)
+{
+    uint32_t chunks = (uint32_t)((run->count + CHUNK - 1) / CHUNK);
+    run->parts = array_alloc_zeroed(chunks, sizeof *run->parts);
+    whit_result result = run->parts ? WHIT_OK : WHIT_ERROR_MEMORY;
+    if (run->parts)
+        threads_for(thread_count, chunks, fn, run);
+    for (uint32_t i = 0; result == WHIT_OK && i < chunks; ++i) {
+        result = run->parts[i].result;
+        hard_add_tally(&run->tally, &run->parts[i].tally);
+    }
+    free(run->parts);
+    if (result != WHIT_OK)
+        log_error(&run->hard->scene->log, "%s: %s: %s", run->hard->scene->name, failure,
+                  whit_result_name(result));
+    return result;
+}
+
+/* ---- Exact and twin ---- */
 
 static void exact_chunk(void *context, uint32_t chunk)
 {
-    struct tracing *t = context;
-    struct rational *rational = rational_create(t->hard->accel);
-    t->failed[chunk] = rational == NULL;
-    for (uint64_t i = (uint64_t)chunk * CHUNK; rational && i < chunk_end(chunk, t->count); ++i)
-        rational_trace(rational, &t->rays[i].ray, NULL, &t->exact[i]);
+    struct run *run = context;
+    struct rational *rational = rational_create(run->hard->accel);
+    run->parts[chunk].result = rational ? WHIT_OK : WHIT_ERROR_MEMORY;
+    for (uint64_t i = (uint64_t)chunk * CHUNK; rational && i < chunk_end(chunk, run->count); ++i)
+        rational_trace(rational, &run->rays[i].ray, NULL, &run->exact[i]);
     rational_destroy(rational);
 }
 
 static void twin_chunk(void *context, uint32_t chunk)
 {
-    struct tracing *t = context;
-    const struct traverse_params params = {.numerics = t->numerics};
-    for (uint64_t i = (uint64_t)chunk * CHUNK; i < chunk_end(chunk, t->count); ++i)
-        traverse_ray(t->hard->accel, &params, &t->rays[i].ray, &t->hits[i], NULL,
-                     &t->failed[chunk]);
-}
-
-static whit_result run_chunks(struct tracing *tracing, uint32_t thread_count,
-                              void (*fn)(void *context, uint32_t index), whit_result failure)
-{
-    uint32_t chunks = chunks_of(tracing->count);
-    whit_result result = WHIT_OK;
-    tracing->failed = array_alloc_zeroed(chunks, sizeof *tracing->failed);
-    if (!tracing->failed) {
-        log_error(&tracing->hard->scene->log, "out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
-    threads_for(thread_count, chunks, fn, tracing);
-    for (uint32_t i = 0; i < chunks; ++i)
-        if (tracing->failed[i])
-            result = failure;
-    free(tracing->failed);
-    return result;
+    struct run *run = context;
+    const struct traverse_params params = {.numerics = run->numerics};
+    uint32_t status = 0;
+    for (uint64_t i = (uint64_t)chunk * CHUNK; i < chunk_end(chunk, run->count); ++i)
+        traverse_ray(run->hard->accel, &params, &run->rays[i].ray, &run->hits[i], NULL, &status);
+    run->parts[chunk].result = status ? WHIT_ERROR_STATUS : WHIT_OK;
 }
 
 whit_result hard_trace_exact(const struct hard_scene *hard, const struct hard_ray *rays,
                              uint64_t count, uint32_t thread_count, struct rational_hit *exact)
 {
-    struct tracing tracing = {.hard = hard, .rays = rays, .count = count, .exact = exact};
-    whit_result result = run_chunks(&tracing, thread_count, exact_chunk, WHIT_ERROR_MEMORY);
-    if (result != WHIT_OK)
-        log_error(&hard->scene->log, "out of memory for exact numbers");
-    return result;
+    struct run run = {.hard = hard, .rays = rays, .count = count, .exact = exact};
+    return run_chunks(&run, thread_count, exact_chunk, "no hits by exact arithmetic");
 }
 
 whit_result hard_trace_twin(const struct hard_scene *hard, uint32_t numerics,
                             const struct hard_ray *rays, uint64_t count, uint32_t thread_count,
                             struct gpu_hit *hits)
 {
-    struct tracing tracing = {
+    struct run run = {
         .hard = hard, .rays = rays, .count = count, .numerics = numerics, .hits = hits};
-    whit_result result = run_chunks(&tracing, thread_count, twin_chunk, WHIT_ERROR_STATUS);
-    if (result != WHIT_OK)
-        log_error(&hard->scene->log, "%s: a traversal on the CPU was cut short", hard->scene->name);
-    return result;
+    return run_chunks(&run, thread_count, twin_chunk, "no hits on the CPU");
 }
 
 /* ---- One ray ---- */
@@ -144,7 +142,7 @@ static bool touches_open_edge(const struct hard_judgement *j, const struct ratio
 {
     uint32_t mesh = j->hard->scene->instances[hit->instance].mesh;
     return j->hard->scene->meshes[mesh].sphere_count == 0 &&
-           j->topology->open[j->topology->first[mesh] + hit->primitive];
+           j->hard->topology.open[j->hard->topology.first[mesh] + hit->primitive];
 }
 
 /* Whether the hit is so near the ray's origin that rounding may put it before or behind the
@@ -153,7 +151,7 @@ static bool starts_there(const struct hard_scene *hard, const struct gpu_ray *ra
 {
     double size = 0.0, dir = 0.0;
     for (int k = 0; k < 3; ++k) {
-        size = fmax(size, hard->hi[k] - hard->lo[k]);
+        size = fmax(size, hard->pose.hi[k] - hard->pose.lo[k]);
         dir = fmax(dir, fabs((double)ray->dir[k]));
     }
     return (double)t * dir <= BESIDE * size;
@@ -170,15 +168,12 @@ static bool starts_in_plane(const struct hard_scene *hard, const struct gpu_ray 
     double corners[3][3], e1[3], e2[3], normal[3], reach = 0.0;
     if (mesh->sphere_count > 0)
         return false;
-    for (int i = 0; i < 3; ++i) {
-        uint32_t vertex = mesh->indices[3 * (size_t)hit->primitive + (uint32_t)i];
-        for (int k = 0; k < 3; ++k) {
-            corners[i][k] =
-                (double)mesh->positions[3 * (size_t)vertex + (uint32_t)k] - (double)local.origin[k];
+    scene_mesh_corners(mesh, hit->primitive, corners);
+    for (int k = 0; k < 3; ++k) {
+        for (int i = 0; i < 3; ++i) {
+            corners[i][k] -= (double)local.origin[k];
             reach = fmax(reach, fabs(corners[i][k]));
         }
-    }
-    for (int k = 0; k < 3; ++k) {
         e1[k] = corners[1][k] - corners[0][k];
         e2[k] = corners[2][k] - corners[0][k];
     }
@@ -280,21 +275,15 @@ static void judge_ray(const struct hard_judgement *j, struct rational *rational,
 
 /* ---- All of them ---- */
 
-struct judging {
-    const struct hard_judgement *judgement;
-    whit_tally *tallies; /* per chunk */
-    uint32_t *status;
-    uint32_t *failed;
-};
-
 static void judge_chunk(void *context, uint32_t chunk)
 {
-    struct judging *judging = context;
-    const struct hard_judgement *j = judging->judgement;
-    struct rational *rational = rational_create(j->hard->accel);
-    judging->failed[chunk] = rational == NULL;
-    for (uint64_t i = (uint64_t)chunk * CHUNK; rational && i < chunk_end(chunk, j->count); ++i)
-        judge_ray(j, rational, i, &judging->tallies[chunk], &judging->status[chunk]);
+    struct run *run = context;
+    struct part *part = &run->parts[chunk];
+    struct rational *rational = rational_create(run->hard->accel);
+    uint32_t status = 0;
+    for (uint64_t i = (uint64_t)chunk * CHUNK; rational && i < chunk_end(chunk, run->count); ++i)
+        judge_ray(run->judgement, rational, i, &part->tally, &status);
+    part->result = !rational ? WHIT_ERROR_MEMORY : status ? WHIT_ERROR_STATUS : WHIT_OK;
     rational_destroy(rational);
 }
 
@@ -316,33 +305,9 @@ void hard_add_tally(whit_tally *sum, const whit_tally *more)
 whit_result hard_judge(const struct hard_judgement *judgement, uint32_t thread_count,
                        whit_tally *tally)
 {
-    const whit_log *log = &judgement->hard->scene->log;
-    uint32_t chunks = chunks_of(judgement->count);
-    struct judging judging = {
-        .judgement = judgement,
-        .tallies = array_alloc_zeroed(chunks, sizeof *judging.tallies),
-        .status = array_alloc_zeroed(chunks, sizeof *judging.status),
-        .failed = array_alloc_zeroed(chunks, sizeof *judging.failed),
-    };
-    whit_result result = WHIT_OK;
-    *tally = (whit_tally){0};
-    if (!judging.tallies || !judging.status || !judging.failed)
-        result = WHIT_ERROR_MEMORY;
-    else
-        threads_for(thread_count, chunks, judge_chunk, &judging);
-    for (uint32_t i = 0; result == WHIT_OK && i < chunks; ++i) {
-        hard_add_tally(tally, &judging.tallies[i]);
-        if (judging.failed[i])
-            result = WHIT_ERROR_MEMORY;
-        else if (judging.status[i])
-            result = WHIT_ERROR_STATUS;
-    }
-    free(judging.tallies);
-    free(judging.status);
-    free(judging.failed);
-    if (result != WHIT_OK)
-        log_error(log, "%s: hits could not be judged: %s", judgement->hard->scene->name,
-                  whit_result_name(result));
+    struct run run = {.hard = judgement->hard, .count = judgement->count, .judgement = judgement};
+    whit_result result = run_chunks(&run, thread_count, judge_chunk, "hits could not be judged");
+    *tally = run.tally;
     return result;
 }
 

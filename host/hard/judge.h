@@ -3,14 +3,12 @@
 #define HARD_JUDGE_H
 
 #include "hard/rays.h"
-#include "hard/topology.h"
 
 /* Adds counts of other rays. */
 void hard_add_tally(whit_tally *sum, const whit_tally *more);
 
 struct hard_judgement {
     const struct hard_scene *hard;
-    const struct hard_topology *topology;
     const struct hard_ray *rays;
     const struct rational_hit *exact;
     const struct gpu_hit *hits;

@@ -250,51 +250,29 @@ static void make_anchors(struct maker *maker)
     put(maker, line[0], line[1], line[2]);
 }
 
-static void make_mesh(struct maker *maker)
-{
-    switch (maker->hard->mesh) {
-    case HARD_GRID:
-        make_grid(maker);
-        break;
-    case HARD_CUBE:
-        make_cube(maker);
-        break;
-    case HARD_NEEDLES:
-        make_needles(maker);
-        break;
-    case HARD_SIZES:
-        make_sizes(maker);
-        break;
-    case HARD_DUPLICATES:
-        make_duplicates(maker);
-        break;
-    case HARD_JUNCTION:
-        make_junctions(maker);
-        break;
-    case HARD_ANCHORS:
-        make_anchors(maker);
-        break;
-    default:
-        make_ball(maker);
-        break;
-    }
-}
+static void (*const makers[HARD_MESHES])(struct maker *maker) = {
+    [HARD_SPHERE] = make_ball,        [HARD_SPIKES] = make_ball,
+    [HARD_SLIVERS] = make_ball,       [HARD_UNWELDED] = make_ball,
+    [HARD_OCTAHEDRON] = make_ball,    [HARD_GRID] = make_grid,
+    [HARD_CUBE] = make_cube,          [HARD_NEEDLES] = make_needles,
+    [HARD_SIZES] = make_sizes,        [HARD_DUPLICATES] = make_duplicates,
+    [HARD_JUNCTION] = make_junctions, [HARD_ANCHORS] = make_anchors,
+};
 
 /* ---- Scenes ---- */
 
 enum { TRIANGLES_MAX = 8 * STEPS * STEPS };
 
-/* The instance's transform: a rotation whose entries are thirds, which no float represents,
-   mirrored and stretched. */
-static struct affine place_instance(const struct hard_case *hard)
+/* A map that scales the axes, may turn them, and moves by +offset on x and z, by -offset on y. The
+   rotation's entries are thirds, which no float represents. */
+static struct affine place_by(const double scale[3], bool turned, double offset)
 {
-    static const double rows[3][3] = {{2, -1, 2}, {2, 2, -1}, {-1, 2, 2}};
-    static const double stretch[3] = {1.0, 1.25, -0.75};
+    static const double turn[3][3] = {{2, -1, 2}, {2, 2, -1}, {-1, 2, 2}};
     struct affine place;
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c)
-            place.m[4 * r + c] = rows[r][c] / 3.0 * stretch[c];
-        place.m[4 * r + 3] = r == 1 ? -hard->offset : hard->offset;
+            place.m[4 * r + c] = (turned ? turn[r][c] / 3.0 : r == c) * scale[c];
+        place.m[4 * r + 3] = r == 1 ? -offset : offset;
     }
     return place;
 }
@@ -373,7 +351,7 @@ static whit_result make_scene(const whit_log *log, const struct hard_case *hard,
     maker.positions = array_alloc(TRIANGLES_MAX, 9 * sizeof(float));
     whit_result result = maker.positions ? WHIT_OK : WHIT_ERROR_MEMORY;
     if (result == WHIT_OK) {
-        make_mesh(&maker);
+        makers[hard->mesh](&maker);
         result = maker.failed ? WHIT_ERROR_FAILED : weld(&maker, &mesh);
     }
     free(maker.positions);
@@ -382,7 +360,7 @@ static whit_result make_scene(const whit_log *log, const struct hard_case *hard,
         log_error(log, "%s: %s", hard->name, whit_result_name(result));
         return result;
     }
-    const struct affine place = place_instance(hard);
+    const struct affine place = place_by((const double[3]){1.0, 1.25, -0.75}, true, hard->offset);
     return hard_scene_of_mesh(log, hard->name, &mesh, hard->instanced ? &place : NULL, out);
 }
 
@@ -411,11 +389,11 @@ static whit_result pose_and_build(const whit_log *log, double time_s, struct har
                                           hard->flatten ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON};
     whit_result result = scene_pose_init(hard->scene, time_s, &hard->pose);
     if (result == WHIT_OK)
+        result = hard_topology_init(hard->scene, &hard->topology);
+    if (result == WHIT_OK)
         result = accel_create(log, hard->scene, &params, &hard->accel);
     if (result == WHIT_OK && time_s != 0.0)
         result = accel_pose(hard->accel, &hard->pose);
-    memcpy(hard->lo, hard->pose.lo, sizeof hard->lo);
-    memcpy(hard->hi, hard->pose.hi, sizeof hard->hi);
     return result;
 }
 
@@ -438,8 +416,8 @@ static whit_result take_scene(const whit_log *log, double time_s, struct hard_sc
 {
     whit_result result = pose_and_build(log, time_s, out);
     for (int k = 0; k < 3; ++k) {
-        out->middle[k] = 0.5 * (out->lo[k] + out->hi[k]);
-        out->reach[k] = 0.25 * (out->hi[k] - out->lo[k]);
+        out->middle[k] = 0.5 * (out->pose.lo[k] + out->pose.hi[k]);
+        out->reach[k] = 0.25 * (out->pose.hi[k] - out->pose.lo[k]);
     }
     if (result != WHIT_OK)
         hard_scene_finish(out);
@@ -481,21 +459,6 @@ const struct hard_variant *hard_variants(uint32_t *count)
     return variants;
 }
 
-/* The variant's transform; the rotation's entries are thirds, which no float represents. */
-static struct affine place_variant(const struct hard_variant *variant)
-{
-    static const double turn[3][3] = {{2, -1, 2}, {2, 2, -1}, {-1, 2, 2}};
-    struct affine place = affine_identity();
-    for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) {
-            double entry = variant->turned ? turn[r][c] / 3.0 : r == c;
-            place.m[4 * r + c] = entry * variant->scale * (variant->mirrored && c == 0 ? -1 : 1);
-        }
-        place.m[4 * r + 3] = r == 1 ? -variant->offset : variant->offset;
-    }
-    return place;
-}
-
 /* Gathers all triangles in world space, transformed by `place` where it is not NULL. */
 static whit_result gather(const whit_log *log, const struct hard_scene *given,
                           const struct affine *place, struct scene_mesh *mesh)
@@ -514,27 +477,28 @@ static whit_result gather(const whit_log *log, const struct hard_scene *given,
     }
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         const struct scene_mesh *from = &scene->meshes[scene->instances[i].mesh];
-        for (uint32_t k = 0; k < 3 * from->triangle_count; ++k) {
-            const float *p = &from->positions[3 * (size_t)from->indices[k]];
-            double at[3] = {(double)p[0], (double)p[1], (double)p[2]};
-            affine_point(&given->pose.instances[i], at, at);
-            if (place)
-                affine_point(place, at, at);
-            float *to = &mesh->positions[3 * (size_t)mesh->vertex_count];
-            mesh->indices[mesh->vertex_count] = mesh->vertex_count;
-            ++mesh->vertex_count;
-            for (int axis = 0; axis < 3; ++axis)
-                to[axis] = (float)at[axis];
+        for (uint32_t t = 0; t < from->triangle_count; ++t) {
+            float *to = &mesh->positions[9 * (size_t)mesh->triangle_count++];
+            double p[3][3];
+            scene_mesh_placed_corners(from, t, &given->pose.instances[i], p);
+            for (int k = 0; k < 3 && place; ++k)
+                affine_point(place, p[k], p[k]);
+            for (int k = 0; k < 9; ++k)
+                to[k] = (float)p[k / 3][k % 3];
         }
     }
-    mesh->triangle_count = mesh->vertex_count / 3;
+    mesh->vertex_count = 3 * mesh->triangle_count;
+    for (uint32_t i = 0; i < mesh->vertex_count; ++i)
+        mesh->indices[i] = i;
     return WHIT_OK;
 }
 
 whit_result hard_scene_vary(const whit_log *log, const struct hard_scene *given,
                             const struct hard_variant *variant, struct hard_scene *out)
 {
-    struct affine place = place_variant(variant);
+    double size = variant->scale;
+    const double scale[3] = {variant->mirrored ? -size : size, size, size};
+    const struct affine place = place_by(scale, variant->turned, variant->offset);
     struct scene_mesh mesh;
     *out = (struct hard_scene){.rays = HARD_MIXED, .truth = HARD_ORACLE};
     whit_result result = gather(log, given, variant->instanced ? NULL : &place, &mesh);
@@ -552,6 +516,7 @@ whit_result hard_scene_vary(const whit_log *log, const struct hard_scene *given,
 void hard_scene_finish(struct hard_scene *hard)
 {
     accel_destroy(hard->accel);
+    hard_topology_finish(&hard->topology);
     scene_pose_finish(&hard->pose);
     scene_destroy(hard->owned);
     *hard = (struct hard_scene){0};

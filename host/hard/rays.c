@@ -6,19 +6,6 @@
 #include "base/random.h"
 #include "hard/rays.h"
 
-const char *hard_rays_name(enum hard_rays rays)
-{
-    static const char *const names[] = {
-        [HARD_AIMED] = "aimed from inside",  [HARD_AROUND] = "aimed",
-        [HARD_AXIAL] = "along axes",         [HARD_LATTICE] = "upright",
-        [HARD_CROSS] = "axial from inside",  [HARD_FLAT] = "in planes",
-        [HARD_GRAZING] = "grazing",          [HARD_FAR] = "from far away",
-        [HARD_LEAVING] = "from the surface", [HARD_LISTED] = "listed",
-        [HARD_MIXED] = "all of these",
-    };
-    return names[rays];
-}
-
 /* ---- Numbers ---- */
 
 static uint32_t draw(uint64_t *state)
@@ -85,18 +72,18 @@ static void draw_triangle(const struct hard_scene *hard, uint64_t *state, struct
     } while (mesh->triangle_count == 0);
     target->instance = at;
     target->primitive = draw(state) % mesh->triangle_count;
-    const uint32_t *index = &mesh->indices[3 * (size_t)target->primitive];
+    const double *m = hard->pose.instances[at].m;
+    double local[3][3];
+    scene_mesh_corners(mesh, target->primitive, local);
     for (int i = 0; i < 3; ++i) {
-        const float *p = &mesh->positions[3 * (size_t)index[i]];
-        const double local[3] = {(double)p[0], (double)p[1], (double)p[2]};
-        const double *m = hard->pose.instances[at].m;
-        affine_point(&hard->pose.instances[at], local, target->corner[i]);
-        for (int k = 0; k < 3 && hard->flatten; ++k)
-            target->corner[i][k] = (double)(float)target->corner[i][k];
-        for (int k = 0; k < 3; ++k)
+        affine_point(&hard->pose.instances[at], local[i], target->corner[i]);
+        for (int k = 0; k < 3; ++k) {
+            if (hard->flatten)
+                target->corner[i][k] = (double)(float)target->corner[i][k];
             target->size[k] = fmax(i ? target->size[k] : 0.0,
-                                   fabs(m[4 * k] * local[0]) + fabs(m[4 * k + 1] * local[1]) +
-                                       fabs(m[4 * k + 2] * local[2]) + fabs(m[4 * k + 3]));
+                                   fabs(m[4 * k] * local[i][0]) + fabs(m[4 * k + 1] * local[i][1]) +
+                                       fabs(m[4 * k + 2] * local[i][2]) + fabs(m[4 * k + 3]));
+        }
     }
 }
 
@@ -175,9 +162,9 @@ static void make_around(const struct hard_scene *hard, uint64_t *state, struct h
         for (int i = 1; i < 3; ++i)
             size = fmax(size, fabs(target.corner[i][k] - target.corner[0][k]));
     for (int k = 0; k < 3; ++k) {
-        double across = draw_signed(state), half = 0.5 * (hard->hi[k] - hard->lo[k]);
-        origin[k] =
-            near ? target.point[k] + 4.0 * size * across : hard->lo[k] + half + 1.5 * half * across;
+        double across = draw_signed(state), half = 0.5 * (hard->pose.hi[k] - hard->pose.lo[k]);
+        origin[k] = near ? target.point[k] + 4.0 * size * across
+                         : hard->pose.lo[k] + half + 1.5 * half * across;
     }
     if (draw(state) % 4u == 0) {
         uint32_t axis = draw(state) % 3u;
@@ -192,13 +179,13 @@ static void make_axial(const struct hard_scene *hard, uint64_t *state, struct ha
     struct target target;
     draw_target(hard, false, state, &target);
     uint32_t axis = draw(state) % 3u;
-    double origin[3], dir[3], size = hard->hi[axis] - hard->lo[axis];
+    double origin[3], dir[3], size = hard->pose.hi[axis] - hard->pose.lo[axis];
     for (int k = 0; k < 3; ++k) {
         origin[k] = target.point[k];
         dir[k] = 0.0 * draw_sign(state);
     }
     dir[axis] = draw_sign(state);
-    origin[axis] = dir[axis] > 0.0 ? hard->lo[axis] - size : hard->hi[axis] + size;
+    origin[axis] = dir[axis] > 0.0 ? hard->pose.lo[axis] - size : hard->pose.hi[axis] + size;
     set_origin(out, origin);
     set_dir(out, dir);
 }
@@ -218,7 +205,7 @@ static void make_lattice(const struct hard_scene *hard, uint64_t *state, struct 
 
 static void make_cross(const struct hard_scene *hard, uint64_t *state, struct hard_ray *out)
 {
-    double origin[3], dir[3], eighth = (hard->hi[0] - hard->lo[0]) / 8.0;
+    double origin[3], dir[3], eighth = (hard->pose.hi[0] - hard->pose.lo[0]) / 8.0;
     uint32_t axis = draw(state) % 3u, zeros = draw(state) % 4u;
     for (uint32_t k = 0; k < 3; ++k) {
         origin[k] = hard->middle[k] + 0.25 * eighth * draw_whole(state, 15);
@@ -294,7 +281,7 @@ static void make_far(const struct hard_scene *hard, uint64_t *state, struct hard
     double origin[3], away = 1.0 / power_of_half(6 + draw(state) % 7u), size = 0.0;
     draw_target(hard, true, state, &target);
     for (int k = 0; k < 3; ++k)
-        size = fmax(size, hard->hi[k] - hard->lo[k]);
+        size = fmax(size, hard->pose.hi[k] - hard->pose.lo[k]);
     for (int k = 0; k < 3; ++k)
         origin[k] = target.point[k] + size * away * draw_signed(state);
     set_origin(out, origin);
@@ -363,44 +350,37 @@ static void make_listed(uint64_t index, struct hard_ray *out)
     out->ray = listed[index % (sizeof listed / sizeof *listed)];
 }
 
+/* All kinds but HARD_LISTED and HARD_MIXED have a function. */
+static const struct {
+    const char *name;
+    void (*make)(const struct hard_scene *hard, uint64_t *state, struct hard_ray *out);
+} kinds[HARD_RAY_KINDS] = {
+    [HARD_AROUND] = {"aimed", make_around},
+    [HARD_AXIAL] = {"along axes", make_axial},
+    [HARD_FLAT] = {"in planes", make_flat},
+    [HARD_GRAZING] = {"grazing", make_grazing},
+    [HARD_FAR] = {"from far away", make_far},
+    [HARD_LEAVING] = {"from the surface", make_leaving},
+    [HARD_AIMED] = {"aimed from inside", make_aimed},
+    [HARD_LATTICE] = {"upright", make_lattice},
+    [HARD_CROSS] = {"axial from inside", make_cross},
+    [HARD_LISTED] = {"listed", NULL},
+    [HARD_MIXED] = {"all of these", NULL},
+};
+
+const char *hard_rays_name(enum hard_rays rays)
+{
+    return kinds[rays].name;
+}
+
 struct hard_ray hard_ray_make(const struct hard_scene *hard, enum hard_rays rays, uint64_t seed,
                               uint64_t index)
 {
     struct hard_ray out = {{{0}, 0.0f, {0}, INFINITY}, HIT_NONE, HIT_NONE};
-    static const enum hard_rays mixed[] = {HARD_AROUND,  HARD_AXIAL, HARD_FLAT,
-                                           HARD_GRAZING, HARD_FAR,   HARD_LEAVING};
     uint64_t state = (seed << 40) + (index << 5);
-    switch (rays == HARD_MIXED ? mixed[index % (sizeof mixed / sizeof *mixed)] : rays) {
-    case HARD_AIMED:
-        make_aimed(hard, &state, &out);
-        break;
-    case HARD_AXIAL:
-        make_axial(hard, &state, &out);
-        break;
-    case HARD_LATTICE:
-        make_lattice(hard, &state, &out);
-        break;
-    case HARD_CROSS:
-        make_cross(hard, &state, &out);
-        break;
-    case HARD_FLAT:
-        make_flat(hard, &state, &out);
-        break;
-    case HARD_GRAZING:
-        make_grazing(hard, &state, &out);
-        break;
-    case HARD_FAR:
-        make_far(hard, &state, &out);
-        break;
-    case HARD_LEAVING:
-        make_leaving(hard, &state, &out);
-        break;
-    case HARD_LISTED:
+    if (rays == HARD_LISTED)
         make_listed(index, &out);
-        break;
-    default:
-        make_around(hard, &state, &out);
-        break;
-    }
+    else
+        kinds[rays == HARD_MIXED ? index % HARD_MIXED_KINDS : rays].make(hard, &state, &out);
     return out;
 }

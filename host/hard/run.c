@@ -10,7 +10,6 @@
 #include "hard/judge.h"
 #include "hard/mesh.h"
 #include "hard/rays.h"
-#include "hard/topology.h"
 
 /* The seed of a case is its number. The report's hash is of the first RAYS_HASHED rays of each
    case. */
@@ -113,10 +112,9 @@ static uint64_t hash_hits(uint64_t value, const struct gpu_hit *hits, uint64_t c
 
 /* Traces and judges the rays in run->rays at one level. */
 static whit_result trace_level(struct hard_run *run, const struct hard_scene *hard,
-                               const struct hard_topology *topology, whit_hard_row *row)
+                               whit_hard_row *row)
 {
     struct hard_judgement judgement = {.hard = hard,
-                                       .topology = topology,
                                        .rays = run->rays,
                                        .exact = run->exact,
                                        .hits = run->twin,
@@ -179,8 +177,7 @@ static whit_result shoot(struct hard_run *run, const struct hard_scene *hard, en
     static const whit_numerics order[LEVELS] = {WHIT_NUMERICS_FAST, WHIT_NUMERICS_WATERTIGHT,
                                                 WHIT_NUMERICS_EXACT};
     whit_hard_row rows[LEVELS];
-    struct hard_topology topology;
-    whit_result result = hard_topology_init(hard->scene, &topology);
+    whit_result result = WHIT_OK;
     for (int l = 0; l < LEVELS; ++l) {
         rows[l] = *names;
         rows[l].numerics = order[l];
@@ -193,13 +190,12 @@ static whit_result shoot(struct hard_run *run, const struct hard_scene *hard, en
         for (int l = 0; result == WHIT_OK && l < LEVELS; ++l) {
             result = still_wanted(run);
             if (result == WHIT_OK && (run->levels >> order[l] & 1u))
-                result = trace_level(run, hard, &topology, &rows[l]);
+                result = trace_level(run, hard, &rows[l]);
         }
     }
     for (int l = 0; result == WHIT_OK && l < LEVELS; ++l)
         if (run->levels >> order[l] & 1u)
             result = keep_row(run, &rows[l]);
-    hard_topology_finish(&topology);
     return result;
 }
 
@@ -242,21 +238,14 @@ static whit_result run_cases(struct hard_run *run)
 
 /* ---- A scene of the user's ---- */
 
-static whit_result describe_surface(struct hard_run *run, const struct scene *scene)
+static void describe_surface(whit_hard_report *report, const struct hard_topology *topology)
 {
-    whit_hard_report *report = run->report;
-    struct hard_topology topology;
-    whit_result result = hard_topology_init(scene, &topology);
-    if (result != WHIT_OK)
-        return result;
-    report->triangles = topology.triangles;
-    report->edges = topology.edges;
-    report->open_edges = topology.open_edges;
-    report->crowded_edges = topology.crowded_edges;
-    report->flipped_edges = topology.flipped_edges;
-    report->duplicates = topology.duplicates;
-    hard_topology_finish(&topology);
-    return WHIT_OK;
+    report->triangles = topology->triangles;
+    report->edges = topology->edges;
+    report->open_edges = topology->open_edges;
+    report->crowded_edges = topology->crowded_edges;
+    report->flipped_edges = topology->flipped_edges;
+    report->duplicates = topology->duplicates;
 }
 
 static whit_result run_variants(struct hard_run *run, const struct hard_scene *given,
@@ -281,19 +270,16 @@ static whit_result run_variants(struct hard_run *run, const struct hard_scene *g
 
 static whit_result run_scene(struct hard_run *run, const struct scene *scene, bool flatten)
 {
-    static const enum hard_rays kinds[] = {HARD_AROUND,  HARD_AXIAL, HARD_FLAT,
-                                           HARD_GRAZING, HARD_FAR,   HARD_LEAVING};
-    const uint32_t count = sizeof kinds / sizeof *kinds;
     struct hard_scene given;
     whit_result result = hard_scene_borrow(&run->log, scene, 0.0, flatten, &given);
     if (result != WHIT_OK)
         return result;
-    result = describe_surface(run, scene);
-    for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
+    describe_surface(run->report, &given.topology);
+    for (uint32_t i = 0; result == WHIT_OK && i < HARD_MIXED_KINDS; ++i) {
         const whit_hard_row names = {
-            .name = hard_rays_name(kinds[i]), .place = "as given", .promised = true};
-        say_progress(run, 0.3 * i / count);
-        result = shoot(run, &given, kinds[i], i + 1, &names);
+            .name = hard_rays_name((enum hard_rays)i), .place = "as given", .promised = true};
+        say_progress(run, 0.3 * i / HARD_MIXED_KINDS);
+        result = shoot(run, &given, (enum hard_rays)i, i + 1, &names);
     }
     if (result == WHIT_OK)
         result = run_variants(run, &given, 0.3);

@@ -11,9 +11,8 @@ struct corner {
 };
 
 struct edge {
-    uint32_t from, to; /* from < to */
-    uint32_t triangle;
-    bool turned; /* the triangle's winding goes from `to` to `from` */
+    uint32_t ends[2]; /* the smaller one first */
+    bool turned;      /* the triangle's winding goes from the larger to the smaller one */
 };
 
 struct face {
@@ -39,9 +38,7 @@ static int compare_words(const uint32_t *x, const uint32_t *y, int count)
 
 static int compare_edges(const void *a, const void *b)
 {
-    const struct edge *x = a, *y = b;
-    const uint32_t left[2] = {x->from, x->to}, right[2] = {y->from, y->to};
-    return compare_words(left, right, 2);
+    return compare_words(((const struct edge *)a)->ends, ((const struct edge *)b)->ends, 2);
 }
 
 static int compare_faces(const void *a, const void *b)
@@ -82,8 +79,8 @@ static void count_edge(struct hard_topology *topology, const struct edge *edges,
     topology->crowded_edges += end - first > 2;
     topology->flipped_edges += end - first == 2 && turned != 1;
     if (end - first != 2) {
-        vertex_open[edges[first].from] = 1;
-        vertex_open[edges[first].to] = 1;
+        vertex_open[edges[first].ends[0]] = 1;
+        vertex_open[edges[first].ends[1]] = 1;
     }
 }
 
@@ -96,7 +93,7 @@ static void count_edges(struct hard_topology *topology, const uint32_t *welded, 
             uint32_t a = welded[3 * t + k], b = welded[3 * t + (k + 1) % 3];
             if (a == b)
                 continue;
-            edges[count++] = (struct edge){a < b ? a : b, a < b ? b : a, t, a > b};
+            edges[count++] = (struct edge){{a < b ? a : b, a < b ? b : a}, a > b};
         }
     }
     qsort(edges, count, sizeof *edges, compare_edges);

@@ -2,7 +2,7 @@
 #ifndef HARD_TOPOLOGY_H
 #define HARD_TOPOLOGY_H
 
-#include "hard/hard.h"
+#include "scene/scene.h"
 
 /* Edges and triangles of all meshes together; vertices with equal coordinates count as one. */
 struct hard_topology {

@@ -8,7 +8,6 @@
 #include "hard/mesh.h"
 #include "hard/rays.h"
 #include "hard/run.h"
-#include "hard/topology.h"
 #include "picture/camera.h"
 
 static const float red[3] = {1.0f, 0.0f, 0.0f}, yellow[3] = {1.0f, 0.7f, 0.0f};
@@ -17,7 +16,6 @@ struct view {
     const whit_hard_view_params *params;
     whit_log log;
     struct hard_scene hard;
-    struct hard_topology topology;
     uint32_t width, height;
     struct hard_ray *rays;
     struct gpu_ray *plain;
@@ -52,7 +50,7 @@ static whit_result prepare(struct view *view)
                                          view->width, view->height, view->plain);
     for (size_t i = 0; result == WHIT_OK && i < count; ++i)
         view->rays[i] = (struct hard_ray){view->plain[i], HIT_NONE, HIT_NONE};
-    return result == WHIT_OK ? hard_topology_init(view->hard.scene, &view->topology) : result;
+    return result;
 }
 
 static whit_result trace(struct view *view, const struct hard_device *device)
@@ -93,7 +91,6 @@ static whit_result paint(struct view *view, float *pixels)
         if (hit->primitive == exact->primitive && hit->instance == exact->instance)
             continue;
         const struct hard_judgement judgement = {.hard = &view->hard,
-                                                 .topology = &view->topology,
                                                  .rays = &view->rays[i],
                                                  .exact = exact,
                                                  .hits = hit,
@@ -113,7 +110,6 @@ static whit_result paint(struct view *view, float *pixels)
 
 static void finish(struct view *view)
 {
-    hard_topology_finish(&view->topology);
     hard_scene_finish(&view->hard);
     free(view->rays);
     free(view->plain);

@@ -13,7 +13,6 @@
 #include "hard/judge.h"
 #include "hard/mesh.h"
 #include "hard/rays.h"
-#include "hard/topology.h"
 #include "peers.h"
 #include "render/render.h"
 
@@ -26,7 +25,6 @@ static const uint32_t levels[] = {NUMERICS_FAST, NUMERICS_WATERTIGHT, NUMERICS_E
 
 struct bench {
     struct hard_scene hard;
-    struct hard_topology topology;
     struct embree *embree[2]; /* as it comes, robust; NULL: not installed */
     struct hard_ray *rays;
     struct rational_hit *exact;
@@ -72,7 +70,6 @@ static void count_embree(struct bench *bench, int tracer)
 static bool count_level(struct bench *bench, int tracer)
 {
     const struct hard_judgement judgement = {.hard = &bench->hard,
-                                             .topology = &bench->topology,
                                              .rays = bench->rays,
                                              .exact = bench->exact,
                                              .hits = bench->hits,
@@ -89,13 +86,7 @@ static bool count_level(struct bench *bench, int tracer)
         hard_judge(&judgement, THREADS, &tally) != WHIT_OK)
         return false;
     bench->differing[tracer] += hard_count_differing(bench->hits, bench->device_hits, bench->count);
-    sum->rays += tally.rays;
-    sum->misses += tally.misses;
-    sum->leaks += tally.leaks;
-    sum->false_hits += tally.false_hits;
-    sum->other_ids += tally.other_ids;
-    sum->wrong_keys += tally.wrong_keys;
-    sum->wrong += tally.wrong;
+    hard_add_tally(sum, &tally);
     return true;
 }
 
@@ -153,7 +144,7 @@ static int run_case(struct bench *bench, const struct hard_case *hard, uint64_t 
     memset(bench->tallies, 0, sizeof bench->tallies);
     if (hard_scene_init(&peers_log, hard, &bench->hard) != WHIT_OK)
         return 1;
-    int failed = hard_topology_init(bench->hard.scene, &bench->topology) != WHIT_OK;
+    int failed = 0;
     for (int i = 0; i < 2; ++i)
         bench->embree[i] = embree_create(bench->hard.scene, &bench->hard.pose, i == 1);
     for (int tracer = FAST; tracer <= EXACT && !failed; ++tracer) {
@@ -171,7 +162,6 @@ static int run_case(struct bench *bench, const struct hard_case *hard, uint64_t 
     }
     for (int i = 0; i < 2; ++i)
         embree_destroy(bench->embree[i]);
-    hard_topology_finish(&bench->topology);
     hard_scene_finish(&bench->hard);
     return failed;
 }

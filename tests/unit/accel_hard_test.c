@@ -17,7 +17,6 @@ enum { RAYS = 512, THREADS = 2 };
 
 struct shots {
     struct hard_scene hard;
-    struct hard_topology topology;
     struct hard_ray rays[RAYS];
     struct rational_hit exact[RAYS];
     struct gpu_hit hits[RAYS];
@@ -31,7 +30,6 @@ static struct shots *shots_make(const struct hard_case *hard, uint64_t seed)
     struct shots *shots = calloc(1, sizeof *shots);
     assert_non_null(shots);
     assert_int_equal(hard_scene_init(&silent, hard, &shots->hard), WHIT_OK);
-    assert_int_equal(hard_topology_init(shots->hard.scene, &shots->topology), WHIT_OK);
     for (uint32_t i = 0; i < RAYS; ++i)
         shots->rays[i] = hard_ray_make(&shots->hard, shots->hard.rays, seed, i);
     assert_int_equal(hard_trace_exact(&shots->hard, shots->rays, RAYS, THREADS, shots->exact),
@@ -41,7 +39,6 @@ static struct shots *shots_make(const struct hard_case *hard, uint64_t seed)
 
 static void shots_free(struct shots *shots)
 {
-    hard_topology_finish(&shots->topology);
     hard_scene_finish(&shots->hard);
     free(shots);
 }
@@ -49,7 +46,6 @@ static void shots_free(struct shots *shots)
 static whit_tally shots_judge(const struct shots *shots, uint32_t numerics)
 {
     const struct hard_judgement judgement = {.hard = &shots->hard,
-                                             .topology = &shots->topology,
                                              .rays = shots->rays,
                                              .exact = shots->exact,
                                              .hits = shots->hits,
@@ -79,7 +75,7 @@ static uint32_t count_hits(const struct shots *shots)
 /* Checks that no triangle of a case was dropped: closed meshes are still closed. */
 static void check_case(const struct hard_case *hard, const struct shots *shots)
 {
-    const struct hard_topology *t = &shots->topology;
+    const struct hard_topology *t = &shots->hard.topology;
     bool closed =
         hard->mesh <= HARD_UNWELDED || hard->mesh == HARD_CUBE || hard->mesh == HARD_OCTAHEDRON;
     assert_int_equal(shots->hard.scene->note_count > 0 &&
