@@ -27,7 +27,8 @@ whit_result frame_fill(struct renderer *renderer)
     frame->texel_area = (float)(camera_pixel_area(frame, kind) / MIPMAP_PIXEL_TEXELS);
     /* The scene may have other cameras: only the kind of the one in use counts. */
     renderer->effects.called[SCENE_EFFECT_ORTHOGRAPHIC] = kind == CAMERA_ORTHOGRAPHIC;
-    renderer->effects.called[SCENE_EFFECT_LENS] = kind == CAMERA_LENS;
+    renderer->effects.called[SCENE_EFFECT_LENS] =
+        kind == CAMERA_LENS && !(renderer->params.effects_removed >> SCENE_EFFECT_LENS & 1);
     renderer->effects.called[SCENE_EFFECT_PANORAMA] = kind == CAMERA_PANORAMA;
     for (int i = 0; i < 3; ++i) {
         frame->zenith[i] = environment->zenith[i] * environment->scale[i];

@@ -143,7 +143,6 @@ static whit_result draw_base(struct pair *pair)
     whit_renderer_params params = pair->own->params;
     params.shader = NULL;
     params.effects_removed &= ~pair->own->effects_unasked;
-    params.sliders = NULL;
     params.progress = NULL;
     params.step = NULL;
     params.step_aov = 0;

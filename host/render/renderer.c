@@ -92,6 +92,7 @@ whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct
         result = hooks_check_step_aov(renderer, renderer->params.step_aov);
     if (result == WHIT_OK)
         result = hooks_read_sliders(renderer, renderer->params.sliders);
+    renderer->params.sliders = NULL; /* the caller's text, which may be gone after this call */
     if (result == WHIT_OK)
         result = hooks_find_material(renderer);
     if (result == WHIT_OK && !(renderer->worn = scene_worn_materials(renderer->scene)))

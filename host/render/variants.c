@@ -23,11 +23,10 @@ uint32_t variant_camera(const struct renderer *renderer)
     const bool *called = renderer->effects.called;
     if (renderer->views.count)
         return renderer->views.camera;
-    bool lens_removed = renderer->params.effects_removed >> SCENE_EFFECT_LENS & 1;
-    return called[SCENE_EFFECT_ORTHOGRAPHIC]            ? CAMERA_ORTHOGRAPHIC
-           : called[SCENE_EFFECT_PANORAMA]              ? CAMERA_PANORAMA
-           : called[SCENE_EFFECT_LENS] && !lens_removed ? CAMERA_LENS
-                                                        : CAMERA_PERSPECTIVE;
+    return called[SCENE_EFFECT_ORTHOGRAPHIC] ? CAMERA_ORTHOGRAPHIC
+           : called[SCENE_EFFECT_PANORAMA]   ? CAMERA_PANORAMA
+           : called[SCENE_EFFECT_LENS]       ? CAMERA_LENS
+                                             : CAMERA_PERSPECTIVE;
 }
 
 bool variant_has_deferred(const struct target *target)

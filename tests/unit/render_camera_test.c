@@ -108,6 +108,18 @@ TEST(blur_has_its_size)
     }
 }
 
+TEST(a_lens_that_is_left_out_is_a_pinhole)
+{
+    struct scene *scene = floor_scene(1);
+    scene->cameras[0].lens_radius = 0.3f;
+    whit_renderer_params params = picture_params;
+    own_fixture f = fixture_open(scene, NULL, &params);
+    assert_true(renderer_compiles(f.renderer, SCENE_EFFECT_LENS));
+    params.effects_removed = UINT64_C(1) << SCENE_EFFECT_LENS;
+    fixture_renew(&f, &params);
+    assert_false(renderer_compiles(f.renderer, SCENE_EFFECT_LENS));
+}
+
 TEST(one_sample_is_a_pinhole)
 {
     own_image lens = lens_picture(10.0, 2.0f, 1, 0.03), hole = lens_picture(10.0, 0.0f, 1, 0.03);

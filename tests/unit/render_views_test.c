@@ -215,6 +215,18 @@ TEST_BY_TURNS(pictures_of_one_camera_in_between, 1, 2)
     fixture_close(&f);
 }
 
+/* Parameters that are read when a renderer is made are not read again. */
+TEST(a_text_of_sliders_may_go)
+{
+    const whit_camera camera = CAMERA_AT(0, 1, 4, 0, 0, 0, 0, 1, 0, 40);
+    char sliders[] = "";
+    const whit_renderer_params params = {.width = 16, .height = 16, .sliders = sliders};
+    own_fixture f = fixture_open(file_scene("cube"), NULL, &params);
+    assert_int_equal(renderer_render_views(f.renderer, &camera, 1), WHIT_OK);
+    sliders[0] = 'x';
+    assert_int_equal(renderer_render(f.renderer), WHIT_OK);
+}
+
 TEST(what_views_do_not_go_with_is_refused)
 {
     const whit_camera camera = CAMERA_AT(0, 1, 4, 0, 0, 0, 0, 1, 0, 40);
