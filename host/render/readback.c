@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "device/buffer.h"
 #include "picture/grid.h"
 #include "render/adaptive_samples.h"
@@ -18,29 +19,55 @@ bool readback_is_late(const struct renderer *renderer)
            renderer->params.sampling.kind == WHIT_SAMPLING_FIXED;
 }
 
-/* The planes of a picture: where the device has the values of a band and where the renderer keeps
-   those of the whole picture. Each value has 32 bits. */
-enum plane_name { PLANE_COLOR, PLANE_IDS, PLANE_CUTS, PLANE_DISTANCES, PLANES };
+enum { READ_SLICE = 4096 }; /* pixels that are read back at once */
 
+/* Where the device has a plane of a band. */
 struct plane {
     struct buffer *buffer; /* NULL: without secondary rays nothing is cut, so weights are zeros */
-    struct image *kept;    /* without contents: the plane is not kept */
     uint32_t channels;
+    uint64_t before; /* pixels in the buffer before those of the band */
 };
 
-static struct plane plane_of(struct renderer *renderer, enum plane_name name)
+static struct plane plane_of(const struct renderer *renderer, enum plane_name name)
 {
     const struct pixel_buffers *p = &renderer->picture.buffers;
-    switch (name) {
-    case PLANE_IDS:
-        return (struct plane){p->ids, &renderer->ids, 2};
-    case PLANE_CUTS:
-        return (struct plane){p->queues.cut_sums, &renderer->cuts, 2};
-    case PLANE_DISTANCES:
-        return (struct plane){p->distances, &renderer->distances, 1};
-    default:
-        return (struct plane){p->pixels, &renderer->color, 4};
+    const struct plane planes[] = {
+        [PLANE_COLOR] = {p->pixels, 4, 0},
+        [PLANE_IDS] = {p->ids, 2, 0},
+        [PLANE_CUTS] = {p->queues.cut_sums, 2, 0},
+        [PLANE_DISTANCES] = {p->distances, 1, 0},
+        [PLANE_AOVS] = {p->aovs, 4 * hooks_aov_count(&renderer->picture), p->chunk_slots},
+    };
+    return planes[name];
+}
+
+void readback_drop_images(struct renderer *renderer)
+{
+    for (int i = 0; i < PLANES; ++i)
+        image_finish(&renderer->planes[i]);
+}
+
+whit_result readback_make_images(struct renderer *renderer)
+{
+    uint32_t aovs = hooks_aov_count(&renderer->picture);
+    bool data = pixels_have_data(&renderer->picture);
+    const bool kept[] = {
+        [PLANE_COLOR] = true,
+        [PLANE_IDS] = data,
+        [PLANE_CUTS] = data && renderer->params.sampling.kind == WHIT_SAMPLING_FIXED,
+        [PLANE_DISTANCES] = renderer->views.count > 0,
+        [PLANE_AOVS] = aovs > 0,
+    };
+    whit_result result = WHIT_OK;
+    for (int i = 0; result == WHIT_OK && i < PLANES; ++i) {
+        uint32_t columns = i == PLANE_AOVS ? aovs : 1;
+        if (kept[i])
+            result = image_init_logged(&renderer->log, &renderer->planes[i],
+                                       renderer->params.width * columns, views_rows(renderer),
+                                       plane_of(renderer, (enum plane_name)i).channels / columns,
+                                       i == PLANE_IDS);
     }
+    return result;
 }
 
 static uint32_t *words_of(const struct image *image)
@@ -48,66 +75,38 @@ static uint32_t *words_of(const struct image *image)
     return image->words ? image->words : (uint32_t *)image->pixels;
 }
 
-/* Reads `count` pixels of the band. */
-static whit_result read_plane(const struct plane *plane, size_t count, uint32_t *words)
+/* Reads `count` pixels of the band, from its pixel `at` on. */
+static whit_result read_plane(const struct renderer *renderer, enum plane_name name, size_t at,
+                              size_t count, void *values)
 {
-    uint64_t bytes = (uint64_t)count * plane->channels * sizeof *words;
-    return plane->buffer ? buffer_read(plane->buffer, 0, words, bytes) : WHIT_OK;
+    const struct plane plane = plane_of(renderer, name);
+    uint64_t pixel_bytes = plane.channels * sizeof(uint32_t);
+    return plane.buffer ? buffer_read(plane.buffer, (plane.before + at) * pixel_bytes, values,
+                                      count * pixel_bytes)
+                        : WHIT_OK;
 }
 
-/* Reads all aovs of `count` pixels of the band, from its pixel `at` on. */
-static whit_result read_aovs(const struct renderer *renderer, size_t at, size_t count,
-                             float *values)
-{
-    const struct pixel_buffers *p = &renderer->picture.buffers;
-    size_t pixel_bytes = (size_t)hooks_aov_count(&renderer->picture) * 4 * sizeof *values;
-    return p->aovs ? buffer_read(p->aovs, (p->chunk_slots + at) * pixel_bytes, values,
-                                 count * pixel_bytes)
-                   : WHIT_OK;
-}
-
-/* Copies the values of the user's functions, of the pixels that the pass drew, into the picture
-   from row `band_y` on. */
-static whit_result read_listed_aovs(struct renderer *renderer, const struct progress *progress,
-                                    uint32_t band_y, uint32_t rows)
-{
-    const struct image *aovs = &renderer->aovs;
-    uint32_t width = renderer->params.width;
-    size_t each = 4 * (size_t)hooks_aov_count(&renderer->picture);
-    whit_result result = WHIT_OK;
-    float *row = aovs->pixels ? malloc(width * each * sizeof *row) : NULL;
-    if (!row)
-        return aovs->pixels ? render_no_memory(renderer, "values of functions") : WHIT_OK;
-    for (uint32_t y = 0; result == WHIT_OK && y < rows; ++y) {
-        size_t first = (size_t)width * (band_y + y);
-        result = read_aovs(renderer, (size_t)width * y, width, row);
-        for (uint32_t x = 0; result == WHIT_OK && x < width; ++x) {
-            if (adaptive_draws(progress, first + x))
-                memcpy(&aovs->pixels[(first + x) * each], &row[x * each], each * sizeof *row);
-        }
-    }
-    free(row);
-    return result;
-}
-
-/* Copies the colours of the pixels that the pass drew, among `count` pixels of the band, into the
+/* Copies a plane of the pixels that the pass drew, among `count` pixels of the band, into the
    picture from pixel `first` on. */
 static whit_result read_listed(struct renderer *renderer, const struct progress *progress,
-                               size_t first, size_t count)
+                               enum plane_name name, size_t first, size_t count)
 {
-    float pixels[READ_SLICE][4];
-    for (size_t at = 0; at < count; at += READ_SLICE) {
+    float *kept = renderer->planes[name].pixels;
+    size_t each = plane_of(renderer, name).channels;
+    whit_result result = WHIT_OK;
+    float *pixels = kept ? array_alloc(READ_SLICE, each * sizeof *pixels) : NULL;
+    if (!pixels)
+        return kept ? render_no_memory(renderer, "pixels") : WHIT_OK;
+    for (size_t at = 0; result == WHIT_OK && at < count; at += READ_SLICE) {
         size_t n = count - at < READ_SLICE ? count - at : READ_SLICE;
-        whit_result result = buffer_read(renderer->picture.buffers.pixels, at * sizeof *pixels,
-                                         pixels, n * sizeof *pixels);
-        if (result != WHIT_OK)
-            return result;
-        for (size_t i = 0; i < n; ++i) {
+        result = read_plane(renderer, name, at, n, pixels);
+        for (size_t i = 0; result == WHIT_OK && i < n; ++i) {
             if (adaptive_draws(progress, first + at + i))
-                memcpy(&renderer->color.pixels[4 * (first + at + i)], pixels[i], sizeof pixels[i]);
+                memcpy(&kept[(first + at + i) * each], &pixels[i * each], each * sizeof *pixels);
         }
     }
-    return WHIT_OK;
+    free(pixels);
+    return result;
 }
 
 whit_result readback_non_finite(const struct target *target, uint32_t *x, uint32_t *y,
@@ -148,20 +147,16 @@ whit_result readback_band(struct renderer *renderer, const struct progress *prog
     size_t count = (size_t)renderer->params.width * rows;
     whit_result result = WHIT_OK;
     if (progress->listed) {
-        result = read_listed(renderer, progress, first, count);
-        if (result == WHIT_OK)
-            result = read_listed_aovs(renderer, progress, band_y, rows);
-    } else if (!readback_is_late(renderer)) {
-        for (int i = 0; result == WHIT_OK && i < PLANES; ++i) {
-            struct plane plane = plane_of(renderer, (enum plane_name)i);
-            uint32_t *kept = words_of(plane.kept);
-            if (kept)
-                result = read_plane(&plane, count, kept + first * plane.channels);
-        }
-        if (result == WHIT_OK && renderer->aovs.pixels)
-            result =
-                read_aovs(renderer, 0, count,
-                          &renderer->aovs.pixels[first * 4 * hooks_aov_count(&renderer->picture)]);
+        result = read_listed(renderer, progress, PLANE_COLOR, first, count);
+        return result == WHIT_OK ? read_listed(renderer, progress, PLANE_AOVS, first, count)
+                                 : result;
+    }
+    for (int i = 0; result == WHIT_OK && i < PLANES && !readback_is_late(renderer); ++i) {
+        enum plane_name name = (enum plane_name)i;
+        uint32_t *kept = words_of(&renderer->planes[i]);
+        if (kept)
+            result = read_plane(renderer, name, 0, count,
+                                kept + first * plane_of(renderer, name).channels);
     }
     return result;
 }
@@ -190,15 +185,16 @@ static void close_gaps(const struct renderer *renderer, struct image *image)
 
 static whit_result read_whole(struct renderer *renderer, enum plane_name name, struct image *out)
 {
-    const struct plane plane = plane_of(renderer, name);
-    whit_result result = begin_read(renderer, plane.channels, name == PLANE_IDS, out);
+    uint32_t channels = plane_of(renderer, name).channels;
+    whit_result result = begin_read(renderer, channels, name == PLANE_IDS, out);
     if (result != WHIT_OK)
         return result;
     size_t count = (size_t)out->width * out->height;
     if (readback_is_late(renderer))
-        result = read_plane(&plane, count, words_of(out));
+        result = read_plane(renderer, name, 0, count, words_of(out));
     else
-        memcpy(words_of(out), words_of(plane.kept), count * plane.channels * sizeof(uint32_t));
+        memcpy(words_of(out), words_of(&renderer->planes[name]),
+               count * channels * sizeof(uint32_t));
     close_gaps(renderer, out);
     return result;
 }
@@ -211,8 +207,8 @@ whit_result renderer_read_color(struct renderer *renderer, struct image *out)
 whit_result renderer_borrow_color(struct renderer *renderer, struct image *out)
 {
     const struct pixel_buffers *p = &renderer->picture.buffers;
-    float *pixels =
-        readback_is_late(renderer) ? buffer_contents(p->pixels) : renderer->color.pixels;
+    float *pixels = readback_is_late(renderer) ? buffer_contents(p->pixels)
+                                               : renderer->planes[PLANE_COLOR].pixels;
     if (!renderer->rendered || !pixels || renderer->views.count)
         return renderer_read_color(renderer, out);
     *out = (struct image){.width = renderer->params.width,
@@ -265,7 +261,7 @@ whit_result readback_aov_row(const struct renderer *renderer, uint32_t index, ui
                              float *row, float *to)
 {
     uint32_t all = hooks_aov_count(&renderer->picture), width = renderer->params.width;
-    whit_result result = read_aovs(renderer, (size_t)width * y, width, row);
+    whit_result result = read_plane(renderer, PLANE_AOVS, (size_t)width * y, width, row);
     if (result == WHIT_OK)
         pick_aov(row, all, index, width, to);
     return result;
@@ -289,7 +285,8 @@ whit_result renderer_read_aov(struct renderer *renderer, uint32_t index, struct 
         if (late)
             result = readback_aov_row(renderer, index, y, row, &out->pixels[4 * at]);
         else
-            pick_aov(&renderer->aovs.pixels[4 * at * all], all, index, width, &out->pixels[4 * at]);
+            pick_aov(&renderer->planes[PLANE_AOVS].pixels[4 * at * all], all, index, width,
+                     &out->pixels[4 * at]);
     }
     free(row);
     if (result != WHIT_OK)

@@ -6,6 +6,9 @@
 
 /* Whether the picture stays on the device until it is asked for: it has one band and one pass. */
 bool readback_is_late(const struct renderer *renderer);
+/* Makes the images for a picture whose bands are read as they are drawn. */
+WHIT_CHECK whit_result readback_make_images(struct renderer *renderer);
+void readback_drop_images(struct renderer *renderer);
 /* Reads row `y` of aov `index` into `to`, if readback_is_late. `row`: room for all aovs of a
    row. */
 WHIT_CHECK whit_result readback_aov_row(const struct renderer *renderer, uint32_t index, uint32_t y,

@@ -12,6 +12,7 @@
 #include "render/frame_uniform.h"
 #include "render/hooks.h"
 #include "render/pixels.h"
+#include "render/readback.h"
 #include "render/stage_set.h"
 #include "render/trace.h"
 #include "render/upload.h"
@@ -152,11 +153,7 @@ void renderer_finish(struct renderer *renderer)
     bodies_finish(&renderer->bodies);
     scene_pose_finish(&renderer->pose);
     free(renderer->worn);
-    image_finish(&renderer->color);
-    image_finish(&renderer->ids);
-    image_finish(&renderer->cuts);
-    image_finish(&renderer->aovs);
-    image_finish(&renderer->distances);
+    readback_drop_images(renderer);
 }
 
 void renderer_destroy(struct renderer *renderer)

@@ -16,6 +16,10 @@
 #include "render/render.h"
 #include "shader/program.h"
 
+/* The planes of a picture: values of 32 bits for each pixel. The image of PLANE_AOVS has one column
+   for each aov of each pixel. */
+enum plane_name { PLANE_COLOR, PLANE_IDS, PLANE_CUTS, PLANE_DISTANCES, PLANE_AOVS, PLANES };
+
 /* The scene in device memory. `none` is a small buffer that is bound in place of each buffer that
    the scene does not need. */
 struct scene_buffers {
@@ -236,11 +240,9 @@ struct renderer {
     struct portable_params portable; /* used with params.portable */
     float sliders[SLIDERS_MAX];      /* slider values of params.shader */
     uint32_t reaches_decide;         /* SHADER_REACHES_* bits that effects depend on: hooks.c */
-    uint64_t effects_unasked;      /* effects removed only because the shader needs none of them */
-    struct bodies bodies;          /* bodies of media in the current pose */
-    struct image color, ids, cuts; /* the last picture, where it has several bands */
-    struct image aovs;             /* as `color`: one column for each aov of each pixel */
-    struct image distances;        /* as `color` */
+    uint64_t effects_unasked;    /* effects removed only because the shader needs none of them */
+    struct bodies bodies;        /* bodies of media in the current pose */
+    struct image planes[PLANES]; /* the last picture, where it has several bands; empty: not kept */
     struct image costs[RAY_KIND_COUNT]; /* costs of first samples; empty for a kind without rays */
     double create_ms;
     /* Properties of the scene that the pipelines were made for (up to has_secondary). */
@@ -256,7 +258,6 @@ struct renderer {
 enum { RENDER_GROUP_SIZE = 128, RENDER_BLOCK_PIXELS = 64 };
 /* Byte offsets of status_loop and status_shape in the status buffer (shaders/bind/trees.glsl). */
 enum { STATUS_LOOP_AT = 8, STATUS_SHAPE_AT = 12 };
-enum { READ_SLICE = 4096 }; /* pixels that are read back at once */
 
 /* Why there is nothing to read: renderer->rendered is false. */
 #define RENDER_NO_PICTURE                                                                          \

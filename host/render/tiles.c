@@ -389,8 +389,8 @@ static whit_result render_adaptive(struct renderer *renderer, struct progress *p
     plan_pass(progress, 0.0, done, done);
     whit_result result = render_pass(renderer, params->sampling.count, progress);
     for (uint8_t level = first + 1; result == WHIT_OK && level <= last; ++level) {
-        uint64_t marked =
-            adaptive_mark(&renderer->color, params->sampling.contrast, level, progress->levels);
+        uint64_t marked = adaptive_mark(&renderer->planes[PLANE_COLOR], params->sampling.contrast,
+                                        level, progress->levels);
         renderer->picture.stats.rays_primary += marked << (2 * level);
         progress->listed = marked;
         double now = (double)(marked << (2 * level)), all = now;
@@ -447,25 +447,6 @@ struct progress render_progress(const struct renderer *renderer)
     };
 }
 
-static whit_result make_images(struct renderer *renderer)
-{
-    const whit_log *log = &renderer->log;
-    uint32_t width = renderer->params.width, rows = views_rows(renderer);
-    uint32_t aovs = hooks_aov_count(&renderer->picture);
-    bool data = pixels_have_data(&renderer->picture);
-    bool cuts = data && renderer->params.sampling.kind == WHIT_SAMPLING_FIXED;
-    whit_result result = image_init_logged(log, &renderer->color, width, rows, 4, false);
-    if (result == WHIT_OK && data)
-        result = image_init_logged(log, &renderer->ids, width, rows, 2, true);
-    if (result == WHIT_OK && cuts)
-        result = image_init_logged(log, &renderer->cuts, width, rows, 2, false);
-    if (result == WHIT_OK && renderer->views.count)
-        result = image_init_logged(log, &renderer->distances, width, rows, 1, false);
-    if (result == WHIT_OK && aovs)
-        result = image_init_logged(log, &renderer->aovs, width * aovs, rows, 4, false);
-    return result;
-}
-
 whit_result render_all(struct renderer *renderer)
 {
     renderer->rendered = false;
@@ -474,11 +455,7 @@ whit_result render_all(struct renderer *renderer)
                   "its time or view could not be set, so there is nothing to render");
         return WHIT_ERROR_USAGE;
     }
-    image_finish(&renderer->color);
-    image_finish(&renderer->ids);
-    image_finish(&renderer->cuts);
-    image_finish(&renderer->aovs);
-    image_finish(&renderer->distances);
+    readback_drop_images(renderer);
     costs_clear(renderer);
     whit_result result = params_check_loops(renderer);
     if (result == WHIT_OK && !renderer->picture.buffers.pixels) /* dropped after an error */
@@ -490,7 +467,7 @@ whit_result render_all(struct renderer *renderer)
     bool outlives = result == WHIT_OK && reuse_outlives(renderer);
     renderer->kept.known = false;
     if (result == WHIT_OK && !readback_is_late(renderer))
-        result = make_images(renderer);
+        result = readback_make_images(renderer);
     stats_clear(&renderer->picture);
     material_shares_clear(&renderer->picture);
     struct progress progress = render_progress(renderer);
