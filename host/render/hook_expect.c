@@ -18,63 +18,47 @@ static void say(const struct pair *pair, const whit_shader_expectation *expected
               expected->line, expected->word, found);
 }
 
-/* Counts the pixels whose bytes differ; *first: index of the first. `words`: of one pixel. */
-static uint64_t count_other(const uint32_t *a, const uint32_t *b, uint64_t pixels, uint32_t words,
-                            uint64_t *first)
+static const uint32_t *pixel_of(const struct image *image, uint64_t index)
 {
-    uint64_t count = 0;
-    for (uint64_t i = 0; i < pixels; ++i) {
-        if (memcmp(a + i * words, b + i * words, words * sizeof *a) == 0)
-            continue;
-        *first = count++ ? *first : i;
-    }
-    return count;
+    const uint32_t *words = image->words ? image->words : (const uint32_t *)image->pixels;
+    return words + index * image->channels;
 }
 
-static void write_hit(const uint32_t ids[2], char *text, size_t bytes)
+/* Describes what a pixel shows: what its camera ray meets, or its colour. */
+static void write_pixel(const struct image *image, uint64_t index, char *text, size_t bytes)
 {
-    if (ids[0] == HIT_NONE)
+    const uint32_t *words = pixel_of(image, index);
+    const float *color = (const float *)words;
+    if (!image->words)
+        snprintf(text, bytes, "%.9g %.9g %.9g", (double)color[0], (double)color[1],
+                 (double)color[2]);
+    else if (words[0] == HIT_NONE)
         snprintf(text, bytes, "nothing");
     else
-        snprintf(text, bytes, "instance %u primitive %u", ids[0], ids[1]);
+        snprintf(text, bytes, "instance %u primitive %u", words[0], words[1]);
 }
 
-static bool ids_hold(const struct pair *pair, const whit_shader_expectation *expected)
+/* Whether all pixels of two images have the same bytes. `differ`: what is said of those that do
+   not. */
+static bool images_hold(const struct pair *pair, const whit_shader_expectation *expected,
+                        const struct image images[2], const char *differ)
 {
-    const struct image *own = &pair->ids[0], *base = &pair->ids[1];
-    uint64_t pixels = (uint64_t)own->width * own->height, first = 0;
-    uint64_t count = count_other(own->words, base->words, pixels, own->channels, &first);
-    char found[384], hit[2][64];
+    const struct image *own = &images[0], *base = &images[1];
+    uint64_t pixels = (uint64_t)own->width * own->height, first = 0, count = 0;
+    char found[384], shown[2][64];
+    for (uint64_t i = 0; i < pixels; ++i) {
+        if (memcmp(pixel_of(own, i), pixel_of(base, i), own->channels * sizeof(uint32_t)) != 0)
+            first = count++ ? first : i;
+    }
     if (!count)
         return true;
-    write_hit(own->words + first * own->channels, hit[0], sizeof hit[0]);
-    write_hit(base->words + first * own->channels, hit[1], sizeof hit[1]);
+    for (int i = 0; i < 2; ++i)
+        write_pixel(&images[i], first, shown[i], sizeof shown[i]);
     snprintf(found, sizeof found,
-             "%llu of %llu pixels meet something else, the first at %llu,%llu: %s, and without the "
-             "shader %s",
-             (unsigned long long)count, (unsigned long long)pixels,
-             (unsigned long long)first % own->width, (unsigned long long)first / own->width, hit[0],
-             hit[1]);
-    say(pair, expected, found);
-    return false;
-}
-
-static bool pixels_hold(const struct pair *pair, const whit_shader_expectation *expected)
-{
-    const struct image *own = &pair->colors[0], *base = &pair->colors[1];
-    uint64_t pixels = (uint64_t)own->width * own->height, first = 0;
-    uint64_t count = count_other((const uint32_t *)own->pixels, (const uint32_t *)base->pixels,
-                                 pixels, own->channels, &first);
-    const float *a = own->pixels + first * own->channels, *b = base->pixels + first * own->channels;
-    char found[384];
-    if (!count)
-        return true;
-    snprintf(found, sizeof found,
-             "%llu of %llu pixels have another colour, the first at %llu,%llu: %.9g %.9g %.9g, and "
-             "without the shader %.9g %.9g %.9g",
-             (unsigned long long)count, (unsigned long long)pixels,
+             "%llu of %llu pixels %s, the first at %llu,%llu: %s, and without the shader %s",
+             (unsigned long long)count, (unsigned long long)pixels, differ,
              (unsigned long long)first % own->width, (unsigned long long)first / own->width,
-             (double)a[0], (double)a[1], (double)a[2], (double)b[0], (double)b[1], (double)b[2]);
+             shown[0], shown[1]);
     say(pair, expected, found);
     return false;
 }
@@ -163,9 +147,11 @@ whit_result renderer_check_expectations(struct renderer *renderer, bool *held)
         result = read_pair(&pair, shader);
     for (uint32_t i = 0; result == WHIT_OK && i < shader->expectation_count; ++i) {
         const whit_shader_expectation *expected = &shader->expectations[i];
-        bool holds = expected->what == WHIT_EXPECT_IDS      ? ids_hold(&pair, expected)
-                     : expected->what == WHIT_EXPECT_PIXELS ? pixels_hold(&pair, expected)
-                                                            : rays_hold(&pair, expected);
+        bool holds = expected->what == WHIT_EXPECT_IDS
+                         ? images_hold(&pair, expected, pair.ids, "meet something else")
+                     : expected->what == WHIT_EXPECT_PIXELS
+                         ? images_hold(&pair, expected, pair.colors, "have another colour")
+                         : rays_hold(&pair, expected);
         *held = *held && holds;
     }
     for (int i = 0; i < 2; ++i) {
