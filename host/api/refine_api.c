@@ -6,7 +6,6 @@
 
 #include "api/handles.h"
 #include "image/estimate.h"
-#include "render/bailout_bound.h"
 #include "shader/program.h"
 
 /* The picture of some of the samples, as means over them, and what drawing it took. */

@@ -223,12 +223,6 @@ static whit_result transfer_ready(struct device *device)
     return result;
 }
 
-static whit_result transfer_run(struct device *device)
-{
-    whit_result result = commands_submit(device->transfer);
-    return result == WHIT_OK ? commands_wait(device->transfer, -1.0) : result;
-}
-
 static whit_result fill(struct buffer *buffer, uint8_t byte)
 {
     struct device *device = buffer->device;
@@ -245,7 +239,7 @@ static whit_result fill(struct buffer *buffer, uint8_t byte)
     if (result != WHIT_OK)
         return result;
     commands_fill(device->transfer, buffer, 0, buffer->size_bytes, 0x01010101u * byte);
-    return transfer_run(device);
+    return commands_run(device->transfer);
 }
 
 whit_result buffer_create(struct device *device, uint64_t size_bytes, uint32_t uses,
@@ -379,7 +373,7 @@ whit_result buffer_write(struct buffer *buffer, uint64_t offset_bytes, const voi
         if (result != WHIT_OK)
             break;
         commands_copy(device->transfer, device->staging, 0, buffer, offset_bytes + done, part);
-        result = transfer_run(device);
+        result = commands_run(device->transfer);
         done += part;
     }
     return result;
@@ -412,7 +406,7 @@ whit_result buffer_read(struct buffer *buffer, uint64_t offset_bytes, void *data
         if (result != WHIT_OK)
             break;
         commands_copy(device->transfer, buffer, offset_bytes + done, device->staging, 0, part);
-        result = transfer_run(device);
+        result = commands_run(device->transfer);
         if (result == WHIT_OK)
             memcpy(to + done, device->staging->mapped, part);
         done += part;

@@ -410,6 +410,12 @@ fail:
     return result;
 }
 
+whit_result commands_run(struct commands *commands)
+{
+    whit_result result = commands_submit(commands);
+    return result == WHIT_OK ? commands_wait(commands, -1.0) : result;
+}
+
 double commands_span_ms(const struct commands *commands, uint32_t span)
 {
     return span < commands->finished_span_count ? commands->span_ms[span] : -1.0;

@@ -28,6 +28,8 @@ void commands_span_begin(struct commands *commands, const char *label);
 void commands_span_end(struct commands *commands);
 /* Returns the first error of the recording, such as out of memory, without submitting. */
 WHIT_CHECK whit_result commands_submit(struct commands *commands);
+/* commands_submit, then commands_wait without a limit. */
+WHIT_CHECK whit_result commands_run(struct commands *commands);
 /* Waits up to `timeout_ms` (< 0: for ever). After WHIT_ERROR_TIME_LIMIT the submission is still in
    flight. */
 WHIT_CHECK whit_result commands_wait(struct commands *commands, double timeout_ms);

@@ -18,12 +18,6 @@ uint32_t device_compile_threads(const struct device *device)
     return device->validation || device->fault.call[0] ? 1 : 0;
 }
 
-static bool environment_on(const char *name)
-{
-    const char *value = getenv(name);
-    return value && *value && strcmp(value, "0") != 0;
-}
-
 static bool has_extension(struct device *device, const char *name)
 {
     uint32_t count = 0;

@@ -95,19 +95,13 @@ static void mark_globals(struct evaluation *e)
     free(at);
 }
 
-static void put(struct evaluation *e, struct word_list *out, const uint32_t *words, uint32_t count)
-{
-    for (uint32_t i = 0; i < count; ++i)
-        evaluate_push(e, out, words[i]);
-}
-
 /* Writes the entry point with only those interface variables that are live. */
 static void put_entry_point(struct evaluation *e, struct word_list *out, const uint32_t *at)
 {
     uint32_t begin = out->count, i = 3, length = spv_length(at);
     while (i < length && at[i] >> 24 != 0) /* the name ends at the word whose last byte is 0 */
         ++i;
-    put(e, out, at, i < length ? i + 1 : length);
+    evaluate_push_words(e, out, i < length ? i + 1 : length, at);
     for (++i; i < length; ++i) {
         if (at[i] < e->source_count && e->results[at[i]].live)
             evaluate_push(e, out, at[i]);
@@ -132,7 +126,7 @@ static bool has_wide_integers(const struct evaluation *e)
 static void put_head(struct evaluation *e, struct word_list *out)
 {
     bool wide = has_wide_integers(e);
-    put(e, out, e->words, SPV_HEADER_WORDS);
+    evaluate_push_words(e, out, SPV_HEADER_WORDS, e->words);
     for (uint32_t word = SPV_HEADER_WORDS; word < e->functions_at;
          word += spv_length(e->words + word)) {
         const uint32_t *at = e->words + word;
@@ -146,12 +140,12 @@ static void put_head(struct evaluation *e, struct word_list *out)
                  op == OP_EXTENSION || op == OP_EXT_INST_IMPORT || op == OP_MEMORY_MODEL ||
                  op == OP_EXECUTION_MODE ||
                  (of_live && !(op == OP_DECORATE && at[2] == DECORATION_SPEC_ID)))
-            put(e, out, at, spv_length(at));
+            evaluate_push_words(e, out, spv_length(at), at);
     }
     for (uint32_t id = e->source_count; id < e->result_count; ++id) {
         const uint32_t exact[] = {spv_head(OP_DECORATE, 3), id, DECORATION_NO_CONTRACTION};
         if (e->results[id].live && e->results[id].exact)
-            put(e, out, exact, 3);
+            evaluate_push_words(e, out, 3, exact);
     }
 }
 
@@ -162,7 +156,7 @@ static void put_live(struct evaluation *e, struct word_list *out, const struct w
         uint32_t op = spv_op(at);
         bool is_type = op >= OP_TYPE_VOID && op <= OP_TYPE_FUNCTION;
         if (e->results[at[is_type ? 1 : 2]].live)
-            put(e, out, at, spv_length(at));
+            evaluate_push_words(e, out, spv_length(at), at);
     }
 }
 
@@ -176,7 +170,7 @@ static void put_body(struct evaluation *e, struct word_list *out)
             while (e->results[at[i]].same_as)
                 at[i] = e->results[at[i]].same_as;
         }
-        put(e, out, at, spv_length(at));
+        evaluate_push_words(e, out, spv_length(at), at);
     }
 }
 
@@ -288,11 +282,11 @@ uint32_t *evaluate_write(struct evaluation *e, size_t *word_count)
     mark_globals(e);
     put_head(e, &out);
     put_live(e, &out, &e->globals);
-    put(e, &out, function, spv_length(function));
-    put(e, &out, label, 2);
+    evaluate_push_words(e, &out, spv_length(function), function);
+    evaluate_push_words(e, &out, 2, label);
     put_live(e, &out, &e->variables);
     put_body(e, &out);
-    put(e, &out, &end, 1);
+    evaluate_push_words(e, &out, 1, &end);
     if (!e->failed)
         renumber_ids(e, &out);
     if (e->failed) {

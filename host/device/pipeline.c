@@ -140,8 +140,7 @@ static void kernel_words_finish(struct kernel_words *kernel)
 
 static bool specializing_is_off(void)
 {
-    const char *value = getenv("WHIT_NO_SPECIALIZE");
-    return value && *value && strcmp(value, "0") != 0;
+    return environment_on("WHIT_NO_SPECIALIZE");
 }
 
 /* Fills the constants in, and drops those of the pipeline's bindings that are not used then. */

@@ -5,7 +5,7 @@
 #include "base/array.h"
 #include "device/buffer.h"
 #include "device/commands.h"
-#include "device/swapchain_show.h"
+#include "device/swapchain_inside.h"
 
 static const struct known_format {
     VkFormat format;

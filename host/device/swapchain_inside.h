@@ -34,4 +34,7 @@ struct swapchain {
     struct swapchain_info info;
 };
 
+/* Waits for the last submission, after which the device uses none of the swapchain's images. */
+WHIT_CHECK whit_result swapchain_wait(struct swapchain *swapchain);
+
 #endif

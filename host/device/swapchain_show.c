@@ -1,6 +1,6 @@
 /* Shows pictures in the window. One picture is in flight at a time: the host is never more than one
    picture ahead of the screen. */
-#include "device/swapchain_show.h"
+#include "device/swapchain_inside.h"
 
 #include <stdlib.h>
 

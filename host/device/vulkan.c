@@ -69,6 +69,12 @@ whit_result device_check(struct device *device, VkResult vk, const char *express
     return lacks ? WHIT_ERROR_MEMORY : result_map(vk);
 }
 
+bool environment_on(const char *name)
+{
+    const char *value = getenv(name);
+    return value && *value && strcmp(value, "0") != 0;
+}
+
 void device_read_fault(struct device *device)
 {
     const char *text = getenv("WHIT_FAULT");

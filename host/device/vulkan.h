@@ -117,6 +117,8 @@ struct binding_set {
     VkDescriptorSet vk; /* null when the pipeline binds nothing */
 };
 
+/* Whether a variable of the environment is set, and neither empty nor 0. */
+bool environment_on(const char *name);
 void device_read_fault(struct device *device);
 /* False when the call is not to be made: *vk is then its result. Else *vk is the result to use
    where the call gives VK_SUCCESS. */

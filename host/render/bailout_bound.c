@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "oracle/nearest.h"
-#include "render/bailout_bound.h"
+#include "render/renderer.h"
 #include "render/textures.h"
 
 static double largest(const float rgb[3])

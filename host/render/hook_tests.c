@@ -37,9 +37,7 @@ static whit_result dispatch(struct renderer *renderer, const struct pass *pass, 
     commands_push(commands, &chunk, sizeof chunk);
     commands_dispatch(commands, groups, 1, tests);
     commands_barrier(commands);
-    result = commands_submit(commands);
-    if (result == WHIT_OK)
-        result = commands_wait(commands, -1.0);
+    result = commands_run(commands);
     return result == WHIT_OK ? status_check(&renderer->picture, false) : result;
 }
 

@@ -246,9 +246,9 @@ static uint32_t read_status(const struct target *target, uint64_t at)
     return fine ? number : 0;
 }
 
-void hooks_describe_file(const struct renderer *renderer, char *text, size_t text_bytes)
+void hooks_describe_file(const struct target *target, char *text, size_t text_bytes)
 {
-    const whit_shader *shader = renderer->params.shader;
+    const whit_shader *shader = target->renderer->params.shader;
     if (shader && shader->text.file_count > 0)
         text_add(text, text_bytes, "; %s has functions of this picture",
                  shader->text.files[0].name);
@@ -259,14 +259,13 @@ void hooks_describe_fuel(const struct target *target, char *text, size_t text_by
     uint32_t line = 0;
     const char *file = "";
     const whit_shader *shader = target->renderer->params.shader;
-    text[0] = 0;
     if (!shader || !shader_find_loop(shader, read_status(target, STATUS_LOOP_AT), &file, &line))
         return;
     if (shader->fuel < SHADER_FUEL_MAX)
-        snprintf(text, text_bytes, ": %s:%u: `//@ fuel N` gives it more than %u, up to %d", file,
+        text_add(text, text_bytes, ": %s:%u: `//@ fuel N` gives it more than %u, up to %d", file,
                  line, shader->fuel, SHADER_FUEL_MAX);
     else
-        snprintf(text, text_bytes, ": %s:%u: it has the most fuel, %d; --trust sets no limit", file,
+        text_add(text, text_bytes, ": %s:%u: it has the most fuel, %d; --trust sets no limit", file,
                  line, SHADER_FUEL_MAX);
 }
 
@@ -282,9 +281,8 @@ void hooks_describe_shape(const struct target *target, char *text, size_t text_b
     const whit_shader *shader = renderer->params.shader;
     uint32_t word = read_status(target, STATUS_SHAPE_AT), reason = word >> SHAPE_REASON_SHIFT;
     uint32_t pixel = SHAPE_PIXEL_MASK - (word & SHAPE_PIXEL_MASK), width = renderer->params.width;
-    text[0] = 0;
     if (shader && reason && shader_text_defines(&shader->text, "intersect", &file, &line))
-        snprintf(text, text_bytes, ": %s:%u: intersect() %s, in pixel %u, %u of %u x %u",
+        text_add(text, text_bytes, ": %s:%u: intersect() %s, in pixel %u, %u of %u x %u",
                  shader->text.files[file].name, line, reasons[reason], pixel % width, pixel / width,
                  width, renderer->params.height);
 }

@@ -25,11 +25,11 @@ void hooks_warn_material(const struct renderer *renderer);
 /* Clears the words of the status buffer about loops without fuel and wrong answers of
    intersect(). */
 WHIT_CHECK whit_result hooks_clear_status(const struct target *target);
-/* Appends the name of the user's file whose functions the picture has; nothing if there is none. */
-void hooks_describe_file(const struct renderer *renderer, char *text, size_t text_bytes);
-/* Describes the loop that ran out of iterations, as the status buffer names it. */
+/* These append to `text`: the name of the user's file whose functions the picture has, if there is
+   one; the loop that ran out of iterations, as the status buffer names it; the wrong answer of
+   intersect(), likewise. */
+void hooks_describe_file(const struct target *target, char *text, size_t text_bytes);
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes);
-/* Describes the wrong answer of intersect(), likewise. */
 void hooks_describe_shape(const struct target *target, char *text, size_t text_bytes);
 
 #endif

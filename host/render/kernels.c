@@ -9,25 +9,22 @@
 
 _Static_assert(STAGE_COUNT * 2 <= WHIT_KERNELS_MAX, "room for all kernels");
 
-/* Counts the instructions of a kernel without making a pipeline. */
-static void count_kernel(const struct pipeline_params *params, bool deferred, whit_kernel *kernel)
-{
-    struct pipeline_info info = {0};
-    bool counted = pipeline_count(params, &info);
-    *kernel = (whit_kernel){.name = params->name,
-                            .deferred = deferred,
-                            .instructions = counted ? info.instructions : 0};
-}
-
-static whit_result list_kernel(struct device *device, const struct pipeline_params *params,
-                               bool deferred, whit_kernel *kernel)
+/* Makes a kernel, or only counts its instructions. */
+static whit_result list_kernel(struct renderer *renderer, bool make,
+                               const struct pipeline_params *params, bool deferred,
+                               whit_kernel *kernel)
 {
     struct pipeline *pipeline = NULL;
-    struct pipeline_info info;
+    struct pipeline_info info = {0};
     double start_ms = clock_ms();
-    whit_result result = pipeline_create(device, params, &pipeline);
-    *kernel = (whit_kernel){
-        .name = params->name, .deferred = deferred, .create_ms = clock_ms() - start_ms};
+    *kernel = (whit_kernel){.name = params->name, .deferred = deferred};
+    if (!make) {
+        if (pipeline_count(params, &info))
+            kernel->instructions = info.instructions;
+        return WHIT_OK;
+    }
+    whit_result result = pipeline_create(renderer->device, params, &pipeline);
+    kernel->create_ms = clock_ms() - start_ms;
     if (result != WHIT_OK)
         return result;
     pipeline_get_info(pipeline, &info);
@@ -35,16 +32,6 @@ static whit_result list_kernel(struct device *device, const struct pipeline_para
     result = pipeline_get_statistics(pipeline, kernel->statistics, &kernel->statistic_count);
     pipeline_destroy(pipeline);
     return result;
-}
-
-static whit_result list_or_count(struct renderer *renderer, bool make,
-                                 const struct pipeline_params *params, bool deferred,
-                                 whit_kernel *kernel)
-{
-    if (make)
-        return list_kernel(renderer->device, params, deferred, kernel);
-    count_kernel(params, deferred, kernel);
-    return WHIT_OK;
 }
 
 static whit_result list_stages(struct renderer *renderer, bool make, whit_kernel *kernels,
@@ -60,10 +47,10 @@ static whit_result list_stages(struct renderer *renderer, bool make, whit_kernel
             continue;
         params.asks_statistics = true;
         bool defers = variant_defers(&params, &deferred);
-        result = list_or_count(renderer, make, &params, false, &kernels[(*count)++]);
+        result = list_kernel(renderer, make, &params, false, &kernels[(*count)++]);
         params.spec = (const uint32_t *)&deferred;
         if (result == WHIT_OK && defers)
-            result = list_or_count(renderer, make, &params, true, &kernels[(*count)++]);
+            result = list_kernel(renderer, make, &params, true, &kernels[(*count)++]);
     }
     return result;
 }

@@ -91,8 +91,7 @@ static whit_result run_dispatch(struct run *run, const void *cases, uint32_t byt
         return result;
     commands_bind(run->commands, run->pipeline, run->set);
     commands_dispatch(run->commands, groups, 1, 1);
-    result = commands_submit(run->commands);
-    return result == WHIT_OK ? commands_wait(run->commands, -1.0) : result;
+    return commands_run(run->commands);
 }
 
 /* Runs compare() of kernel/portable.comp over all of its cases. */

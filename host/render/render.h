@@ -79,6 +79,11 @@ WHIT_CHECK whit_result renderer_grid_rays(const struct renderer *renderer, struc
    what WHIT_CLASSES_AUTO amounts to. */
 bool render_few_kernels(const whit_renderer_params *params);
 
+/* By how much a pixel may differ because of --bailout, where the weights of its rays that were cut
+   sum to `weight`, with the renderer's settings; < 0: no bound is known (emissive surfaces as
+   points, highlights of flat emitters, a light on a surface). */
+double bailout_bound(const struct renderer *renderer, double weight);
+
 /* Whether kernels are made with an effect. */
 bool renderer_compiles(const struct renderer *renderer, enum scene_effect effect);
 /* WHIT_ERROR_DEVICE when the kernel cannot be specialized. */

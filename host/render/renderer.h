@@ -274,5 +274,10 @@ WHIT_CHECK whit_result renderer_init(struct renderer *renderer, const whit_log *
 void renderer_finish(struct renderer *renderer);
 /* Makes the kernels of the picture where there are none yet, and binds them. */
 WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
+/* Makes the buffers of pixels anew, for the picture as it is now. */
+WHIT_CHECK whit_result retarget_pixels(struct renderer *renderer);
+/* Forgets the figures of the last picture, and keeps what was measured before it. */
+void stats_clear(struct target *target);
+void trace_finish(struct trace_state *trace);
 
 #endif

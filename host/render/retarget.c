@@ -1,12 +1,10 @@
 /* Points an existing renderer at another picture: size, camera, time, samples, limits. */
-#include "render/retarget.h"
 #include "picture/camera.h"
 #include "render/async.h"
 #include "render/frame_uniform.h"
 #include "render/hooks.h"
 #include "render/pixels.h"
 #include "render/renderer.h"
-#include "render/stats.h"
 #include "render/variants.h"
 #include "render/views.h"
 

@@ -6,7 +6,6 @@
 #include "device/device.h"
 #include "device/pipeline.h"
 #include "render/stage_set.h"
-#include "render/translation.h"
 
 /* Generations that are recorded for the first tile, before it is known how many there are. */
 enum { EXPECTED_FIRST = 4 };

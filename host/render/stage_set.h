@@ -27,6 +27,10 @@ WHIT_CHECK whit_result stages_take(struct target *target, struct stage_set *set)
 WHIT_CHECK whit_result stages_replace(struct target *target, const whit_shader *before);
 /* Makes and binds the scene's own set if there is none. */
 WHIT_CHECK whit_result stages_compile(struct target *target);
+/* Translates the kernels of a set that was just made and bound to machine code on two cores, if the
+   driver would use one core and its cache has none of this code. Errors are the device's. After a
+   request to stop, the remaining kernels are translated when they are dispatched. */
+WHIT_CHECK whit_result translation_share(struct target *target, const struct stages_job *job);
 /* Makes the kernel that was put off for params.few_pixels once that is no longer set, and binds the
    set, which must exist. */
 WHIT_CHECK whit_result stages_complete(struct target *target);

@@ -1,10 +1,9 @@
 /* The statistics of a picture. */
 #include <string.h>
 
-#include "render/bailout_bound.h"
 #include "render/material_shares.h"
+#include "render/renderer.h"
 #include "render/stage_times.h"
-#include "render/stats.h"
 
 void stats_clear(struct target *target)
 {

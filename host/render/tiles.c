@@ -19,10 +19,8 @@
 #include "render/pixels.h"
 #include "render/readback.h"
 #include "render/renderer.h"
-#include "render/retarget.h"
 #include "render/reuse.h"
 #include "render/stages.h"
-#include "render/stats.h"
 #include "render/steps.h"
 #include "render/tiles.h"
 #include "render/views.h"
@@ -37,16 +35,15 @@ static void describe_non_finite(const struct target *target, char *text, size_t 
 {
     uint32_t x, y, count, stride = views_stride(target->renderer);
     char view[32] = "";
-    text[0] = 0;
     if (readback_non_finite(target, &x, &y, &count) == WHIT_OK && count > 0) {
         if (target->renderer->views.count) {
             snprintf(view, sizeof view, " of view %u", y / stride);
             y %= stride;
         }
-        snprintf(text, text_bytes, ": in %u pixel%s so far, the first at %u,%u%s", count,
+        text_add(text, text_bytes, ": in %u pixel%s so far, the first at %u,%u%s", count,
                  count == 1 ? "" : "s", x, y, view);
     }
-    hooks_describe_file(target->renderer, text, text_bytes);
+    hooks_describe_file(target, text, text_bytes);
 }
 
 whit_result status_check(struct target *target, bool traces)
@@ -60,33 +57,30 @@ whit_result status_check(struct target *target, bool traces)
     const struct {
         uint32_t bit;
         const char *text;
+        void (*describe)(const struct target *target, char *text, size_t text_bytes);
     } reasons[] = {
         {STATUS_UNFINISHED_TRAVERSAL,
          traces ? "a traversal was cut short (the driver ends long loops; --on cpu ends none)"
-                : "a traversal was cut short (the driver ends long loops)"},
-        {STATUS_NODE_STACK_OVERFLOW, "the node stack overflowed"},
-        {STATUS_NON_FINITE, "radiance is not finite"},
-        {STATUS_MEDIUM_STACK_OVERFLOW, "a ray was in more media at once than its stack holds"},
-        {STATUS_UNFINISHED_LOOP, "a loop over lights was cut short (the driver ends long loops)"},
+                : "a traversal was cut short (the driver ends long loops)",
+         NULL},
+        {STATUS_NODE_STACK_OVERFLOW, "the node stack overflowed", NULL},
+        {STATUS_NON_FINITE, "radiance is not finite", describe_non_finite},
+        {STATUS_MEDIUM_STACK_OVERFLOW, "a ray was in more media at once than its stack holds",
+         NULL},
+        {STATUS_UNFINISHED_LOOP, "a loop over lights was cut short (the driver ends long loops)",
+         NULL},
         {STATUS_FUEL,
-         "all loops in one call of the shader took more iterations together than it may"},
+         "all loops in one call of the shader took more iterations together than it may",
+         hooks_describe_fuel},
         {STATUS_CUT_LOOPS,
          "loops of the shader, with whit's own in trace(), visible() and the kernel "
          "around it, took more iterations than the driver allows all loops of a "
-         "kernel together (65,535 on lavapipe)"},
-        {STATUS_SHAPE, "the answer for the shader's shape is wrong"},
+         "kernel together (65,535 on lavapipe)",
+         hooks_describe_file},
+        {STATUS_SHAPE, "the answer for the shader's shape is wrong", hooks_describe_shape},
     };
-    char text[2048] = "", where[768] = "", loop[768] = "", shape[768] = "", file[768] = "";
-    if (word & STATUS_NON_FINITE)
-        describe_non_finite(target, where, sizeof where);
-    if (word & STATUS_FUEL)
-        hooks_describe_fuel(target, loop, sizeof loop);
-    if (word & STATUS_SHAPE)
-        hooks_describe_shape(target, shape, sizeof shape);
-    if (word & (STATUS_FUEL | STATUS_SHAPE))
-        result = hooks_clear_status(target); /* or the next picture would name the same place */
-    if (word & STATUS_CUT_LOOPS)
-        hooks_describe_file(target->renderer, file, sizeof file);
+    char text[2048] = "";
+    uint32_t places = word & (STATUS_FUEL | STATUS_SHAPE);
     /* Only the cause is told: what loops that were cut short have made follows from it. */
     if (word & (STATUS_FUEL | STATUS_CUT_LOOPS))
         word &= ~(STATUS_UNFINISHED_TRAVERSAL | STATUS_UNFINISHED_LOOP);
@@ -95,14 +89,15 @@ whit_result status_check(struct target *target, bool traces)
     if (word & STATUS_FUEL)
         word &= ~STATUS_CUT_LOOPS;
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; ++i) {
-        if (word & reasons[i].bit)
-            text_add(text, sizeof text, "%s%s%s", text[0] ? "; " : "", reasons[i].text,
-                     reasons[i].bit == STATUS_NON_FINITE  ? where
-                     : reasons[i].bit == STATUS_FUEL      ? loop
-                     : reasons[i].bit == STATUS_SHAPE     ? shape
-                     : reasons[i].bit == STATUS_CUT_LOOPS ? file
-                                                          : "");
+        char detail[768] = "";
+        if (!(word & reasons[i].bit))
+            continue;
+        if (reasons[i].describe)
+            reasons[i].describe(target, detail, sizeof detail);
+        text_add(text, sizeof text, "%s%s%s", text[0] ? "; " : "", reasons[i].text, detail);
     }
+    if (places) /* or the next picture would name the same place */
+        result = hooks_clear_status(target);
     log_error(&target->renderer->log, "the result is not to be trusted: %s", text);
     return result == WHIT_OK ? WHIT_ERROR_STATUS : result;
 }
@@ -133,37 +128,23 @@ static void report_progress(struct renderer *renderer, const struct progress *pr
         renderer->params.progress(renderer->params.progress_user, picture_share(progress));
 }
 
-whit_result render_stop_asked(const struct renderer *renderer, const struct progress *progress)
+whit_result render_stop_due(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
     if (params->cancel && *params->cancel)
         return WHIT_ERROR_CANCELLED;
-    if (params->time_limit_s > 0.0 &&
-        clock_ms() - renderer->create_ms > params->time_limit_s * 1e3) {
-        log_error(&renderer->log, "the time limit passed with %.0f %% of the picture done",
-                  100.0 * picture_share(progress));
-        return WHIT_ERROR_TIME_LIMIT;
-    }
-    return WHIT_OK;
+    bool late =
+        params->time_limit_s > 0.0 && clock_ms() - renderer->create_ms > params->time_limit_s * 1e3;
+    return late ? WHIT_ERROR_TIME_LIMIT : WHIT_OK;
 }
 
-static whit_result submit(struct target *target)
+whit_result render_stop_asked(const struct renderer *renderer, const struct progress *progress)
 {
-    struct renderer *renderer = target->renderer;
-    whit_result result = commands_submit(renderer->commands);
-    if (result == WHIT_OK)
-        result = commands_wait(renderer->commands, -1.0);
-    if (result != WHIT_OK)
-        return result;
-    uint32_t span = 0;
-    do {
-        double device_ms = commands_span_ms(renderer->commands, span);
-        if (device_ms < 0.0 || target->stats.render_device_ms < 0.0)
-            target->stats.render_device_ms = -1.0;
-        else
-            target->stats.render_device_ms += device_ms;
-    } while (++span < commands_span_count(renderer->commands));
-    return status_check(target, false);
+    whit_result result = render_stop_due(renderer);
+    if (result == WHIT_ERROR_TIME_LIMIT)
+        log_error(&renderer->log, "the time limit passed with %.0f %% of the picture done",
+                  100.0 * picture_share(progress));
+    return result;
 }
 
 void render_clear_deferred(struct renderer *renderer, struct buffer *deferred)
@@ -220,8 +201,20 @@ static uint32_t blocks_of(uint64_t pixels)
 
 whit_result render_finish_submission(struct target *target)
 {
-    commands_barrier(target->renderer->commands);
-    return submit(target);
+    struct renderer *renderer = target->renderer;
+    commands_barrier(renderer->commands);
+    whit_result result = commands_run(renderer->commands);
+    if (result != WHIT_OK)
+        return result;
+    uint32_t span = 0;
+    do {
+        double device_ms = commands_span_ms(renderer->commands, span);
+        if (device_ms < 0.0 || target->stats.render_device_ms < 0.0)
+            target->stats.render_device_ms = -1.0;
+        else
+            target->stats.render_device_ms += device_ms;
+    } while (++span < commands_span_count(renderer->commands));
+    return status_check(target, false);
 }
 
 /* Pixels on a side of the largest tile for which the buffers have room. */

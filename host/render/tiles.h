@@ -25,7 +25,9 @@ struct progress render_progress(const struct renderer *renderer);
 /* Draws the picture, of one camera or of many. */
 WHIT_CHECK whit_result render_all(struct renderer *renderer);
 
-/* WHIT_ERROR_CANCELLED or WHIT_ERROR_TIME_LIMIT if the picture is to stop; else WHIT_OK. */
+/* WHIT_ERROR_CANCELLED or WHIT_ERROR_TIME_LIMIT if the picture is to stop; else WHIT_OK.
+   render_stop_asked logs that the time limit passed. */
+WHIT_CHECK whit_result render_stop_due(const struct renderer *renderer);
 WHIT_CHECK whit_result render_stop_asked(const struct renderer *renderer,
                                          const struct progress *progress);
 /* Empties a list of deferred rays; NULL: nothing to do. The caller adds barriers. */

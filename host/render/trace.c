@@ -1,6 +1,5 @@
 /* Batches of rays are uploaded, traced and read back in pieces that fit the device's buffers and
    finish soon. */
-#include "render/trace.h"
 #include "render/renderer.h"
 #include "render/tiles.h"
 #include "render/upload.h"
@@ -115,9 +114,7 @@ static whit_result dispatch(struct renderer *renderer, bool any, bool beams,
                              &again, sizeof again);
     commands_span_end(renderer->commands);
     commands_barrier(renderer->commands);
-    result = commands_submit(renderer->commands);
-    if (result == WHIT_OK)
-        result = commands_wait(renderer->commands, -1.0);
+    result = commands_run(renderer->commands);
     if (result == WHIT_OK)
         renderer->trace.device_ms += commands_span_ms(renderer->commands, 0);
     return result == WHIT_OK ? status_check(&renderer->picture, true) : result;

@@ -7,13 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/clock.h"
 #include "base/threads.h"
 #include "device/buffer.h"
 #include "device/commands.h"
 #include "device/pipeline.h"
 #include "render/stage_set.h"
-#include "render/translation.h"
+#include "render/tiles.h"
 #include "render/variants.h"
 
 /* The first dispatch of a kernel takes less than this if its code is in the cache, and more if it
@@ -38,19 +37,12 @@ struct work {
     uint32_t done_there;
 };
 
-/* Whether the picture is to stop, which it will do before its first dispatch. */
-static bool stop_is_due(const struct renderer *renderer)
-{
-    const whit_renderer_params *params = &renderer->params;
-    return (params->cancel && *params->cancel) ||
-           (params->time_limit_s > 0.0 &&
-            clock_ms() - renderer->create_ms > params->time_limit_s * 1e3);
-}
-
-/* The next kernel to translate; NULL: none is left, or the picture is to stop. */
+/* The next kernel to translate; NULL: none is left, or the picture is to stop, which it will do
+   before its first dispatch. */
 static const struct kernel *take(struct work *work)
 {
-    uint32_t index = stop_is_due(work->renderer) ? work->count : atomic_fetch_add(&work->taken, 1);
+    bool stops = render_stop_due(work->renderer) != WHIT_OK;
+    uint32_t index = stops ? work->count : atomic_fetch_add(&work->taken, 1);
     return index < work->count ? &work->kernels[index] : NULL;
 }
 
@@ -177,7 +169,7 @@ static bool keeps_machine_code(const struct renderer *renderer)
 static whit_result find_slow(struct work *work)
 {
     whit_result result = WHIT_OK;
-    while (result == WHIT_OK && work->count > 0 && !stop_is_due(work->renderer)) {
+    while (result == WHIT_OK && work->count > 0 && render_stop_due(work->renderer) == WHIT_OK) {
         result = submit_here(work->renderer, &work->kernels[--work->count]);
         if (result == WHIT_OK)
             result = commands_wait(work->renderer->commands, CACHED_MS);

@@ -10,7 +10,6 @@
 #include "render/frame_uniform.h"
 #include "render/pixels.h"
 #include "render/renderer.h"
-#include "render/retarget.h"
 #include "render/stage_set.h"
 #include "render/tiles.h"
 #include "render/upload.h"
