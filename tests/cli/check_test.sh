@@ -225,6 +225,11 @@ check "a camera that is not there" grep -q "^whit: error: looks.whit:3: lost: .*
 check "all are counted" grep -qx "3 cases, 1 new, 2 broken" stdout
 expect 2 "nor accepted" check looks.whit --accept all
 check "the others are" grep -q "^case fine of " looks.golden
+for level in 0.5 0.9; do printf 'vec3 post(ivec2 at, vec3 color) { return %s * color; }\n' $level >post-$level.glsl; done
+printf '%s cube.json --size 16x12 --shader post-0.5.glsl\n' before behind >functions.whit
+sed -i '1a broken broken.json --shader post-0.9.glsl' functions.whit
+expect 2 "functions of a case that cannot be drawn" check functions.whit --json functions.json
+check "are not those of the next one" jq -e '.cases[0].is.colors == .cases[2].is.colors' functions.json
 printf 'mtllib nowhere.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >tri.obj
 printf 'newmtl a\nmap_Kd nowhere.png\n' >lost.mtl
 printf 'mtllib lost.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n' >lost.obj

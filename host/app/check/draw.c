@@ -129,11 +129,13 @@ static whit_result take_trees(struct job *job, struct studio_scene *scene)
     return cli_no_memory();
 }
 
-/* Compiles the case's functions, unless those of the case before are the same. */
+/* Compiles the case's functions, unless those of the case before, drawn or not, are the same. */
 static whit_result take_shader(struct studio *studio, struct job *job)
 {
-    bool same = studio->job.shader && settings_same_shader(&studio->drawn_as, &job->settings);
+    bool same = settings_same_shader(&studio->drawn_as, &job->settings) &&
+                (studio->job.shader || !settings_compiles(&job->settings));
     if (!same) {
+        studio->drawn_as = job->settings;
         drop_renderer(studio);
         whit_shader_destroy(studio->job.shader);
         studio->job.shader = NULL;
