@@ -18,6 +18,7 @@ scene mirror "$away" ', { "shape": "plane", "size": 8, "rotation": [-90, 0, 0], 
     "material": { "diffuse": 0.05, "reflection": 0.9 } }'
 scene aside '{ "eye": [0, 0, 3], "target": [9, 0, 0.5] }' ''
 scene dark '{ "eye": [0, 0, 0.6], "target": [0, 0, -1] }' '' '"ambient": 0,'
+echo 'void camera(vec2 at, inout vec3 origin, inout vec3 dir) { dir.z = -dir.z; }' >back.glsl
 
 cat >looks.whit <<'END'
 # behind the camera
@@ -36,10 +37,11 @@ near       cube.json --camera 0,0,0.501,0,0,0,0,1,0,5 --light none
 # fine
 cube       cube.json
 mirror     mirror.json
+functions  away.json --shader back.glsl
 END
 sed -i 's/json/json --size 64x48/' looks.whit
 expect 1 "vacuous pictures" check looks.whit --accept all
-check "ten are refused" grep -qx "12 cases, 2 accepted, 10 refused" stdout
+check "ten are refused" grep -qx "13 cases, 3 accepted, 10 refused" stdout
 for name in away away-own floor behind; do
     check "$name" grep -q "^$name: .*refused as a golden: the model is behind the camera" stdout
 done
@@ -49,7 +51,7 @@ done
 for name in inside dark near; do
     check "$name" grep -q "^$name: .*refused as a golden: every pixel has the same colour" stdout
 done
-check "the golden has the other two alone" test "$(grep -c '^case' looks.golden)" -eq 2
+check "the golden has the others alone" test "$(grep -c '^case' looks.golden)" -eq 3
 
 # A case that was accepted with a good picture is refused as soon as its picture shows nothing.
 printf 'cube cube.json --size 64x48\n' >looks.whit

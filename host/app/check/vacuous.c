@@ -57,16 +57,19 @@ static bool find_camera(const struct drawing *drawing, double eye[3], double tar
 }
 
 /* Whether the scene's objects, without a floor, all lie behind the camera's plane, where no mirror
-   or glass shows them. False where this is not known: in an animated scene at another time than 0.
- */
+   or glass shows them. False where this is not known: in an animated scene at another time than 0,
+   and where a user's functions aim rays or add a shape. */
 static bool is_behind(const struct drawing *drawing)
 {
+    const uint32_t aiming = 1u << WHIT_HOOK_CAMERA | 1u << WHIT_HOOK_INTERSECT;
+    bool functions = (job_shader_info(drawing->job.shader).hooks & aiming) ||
+                     drawing->stats.rays_by_functions > 0;
     double eye[3], target[3];
     whit_scene_info scene;
     whit_scene_get_info(drawing->job.scene, &scene);
     bool moves = scene.channel_count > 0 && drawing->params.time_s != 0.0;
     bool turned = drawing->stats.rays_reflected > 0 || drawing->stats.rays_refracted > 0;
-    if (moves || turned || scene.objects_lo[0] > scene.objects_hi[0] ||
+    if (moves || turned || functions || scene.objects_lo[0] > scene.objects_hi[0] ||
         !find_camera(drawing, eye, target))
         return false;
     for (int corner = 0; corner < 8; ++corner) {
