@@ -17,10 +17,10 @@ add_executable(whit_program
   app/bvh/bvh_command.c app/bvh/study.c app/bvh/study_output.c app/bvh/study_rays.c
   app/bvh/study_trace.c
   app/check/accept.c app/check/accept_from.c app/check/base.c app/check/case_options.c
-  app/check/cause.c app/check/check_command.c app/check/describe.c app/check/drawing_difference.c
+  app/check/cause.c app/check/check_command.c app/check/describe.c
   app/check/draw.c app/check/expect.c app/check/expect_check.c app/check/golden.c
   app/check/junit.c app/check/lanes.c app/check/page.c
-  app/check/pictures.c app/check/probe.c
+  app/check/pictures.c
   app/check/report.c app/check/search.c app/check/strength.c app/check/suite.c
   app/check/thumbnails.c app/check/vacuous.c app/check/verdict.c
   app/check/worktree.c

@@ -21,14 +21,15 @@ static void fill(struct golden *golden)
     struct golden_case cube = room;
     *golden = (struct golden){.exists = true};
     assert_true(golden_put(golden, &room));
-    assert_true(golden_case_add_part(golden_find(golden, "room"), 0xdeadbeef));
-    assert_true(golden_case_add_part(golden_find(golden, "room"), 0x00000007));
+    assert_true(golden_case_add_part(&golden->cases[0], 0xdeadbeef));
+    assert_true(golden_case_add_part(&golden->cases[0], 0x00000007));
     cube.name = (char[]){"cube"};
     cube.reason = NULL;
     assert_true(golden_put(golden, &cube));
     assert_true(golden_put_part(golden, "mesh ball of room.json", 0xdeadbeef));
     assert_true(golden_put_part(golden, "light 0 of room.json", 0x00000007));
     assert_true(golden_put_part(golden, "light 0 of room.json", 0x00000009)); /* nobody has it */
+    golden_sort(golden);
 }
 
 #define PICTURE                                                                                    \

@@ -16,6 +16,7 @@ static void put_part(struct golden *golden, const char *key, uint64_t content)
     uint32_t hash = golden_part_hash(key, content);
     assert_true(golden_put_part(golden, key, hash));
     assert_true(golden_case_add_part(&golden->cases[0], hash));
+    golden_sort(golden);
 }
 
 static struct settings settings = {.shader = "toon.glsl"};

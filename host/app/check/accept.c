@@ -1,7 +1,6 @@
-/* Accepts drawn pictures into the golden. */
+/* --accept and --prune: both write the golden of a suite. */
 #include <string.h>
 
-#include "app/check/accept.h"
 #include "app/check/thumbnails.h"
 #include "app/document.h"
 #include "base/array.h"
@@ -39,7 +38,7 @@ static bool put_parts(struct golden *golden, const struct golden *found)
 static bool put_case(struct check *check, const struct check_result *result)
 {
     struct golden_case item = result->found.cases[0];
-    const struct golden_case *old = golden_find(&check->golden, item.name);
+    const struct golden_case *old = golden_find(&check->old, item.name);
     char shown[4 * GOLDEN_REASON_MAX + 1];
     bool is_new = result->verdict == CHECK_DIFFERS || result->verdict == CHECK_NEW;
     item.reason = old ? old->reason : NULL;
@@ -60,24 +59,6 @@ static bool note_accepted(struct check *check, struct check_result *result)
     return !check->thumbnails || check_save_thumbnail(check, result) == WHIT_OK;
 }
 
-int check_accept(struct check *check)
-{
-    if (!check_reason(check))
-        return EXIT_USAGE;
-    for (uint32_t i = 0; i < check->suite.count; ++i) {
-        struct check_result *result = &check->results[i];
-        if (can_accept(result) && !put_case(check, result))
-            return cli_exit_of(cli_no_memory());
-    }
-    int saved = check_prune(check), noted = saved;
-    for (uint32_t i = 0; saved == EXIT_FINE && i < check->suite.count; ++i) {
-        struct check_result *result = &check->results[i];
-        if (can_accept(result) && !note_accepted(check, result))
-            noted = EXIT_USAGE;
-    }
-    return noted;
-}
-
 /* Removes the cases that the suite does not have. */
 static void drop_cases(struct golden *golden, const struct suite *suite)
 {
@@ -87,7 +68,7 @@ static void drop_cases(struct golden *golden, const struct suite *suite)
     }
 }
 
-/* Says which cases the saved golden no longer has. */
+/* Says which cases the saved golden no longer has, and removes their thumbnails. */
 static void say_dropped(const struct check *check)
 {
     for (uint32_t i = 0; i < check->old.count; ++i) {
@@ -99,8 +80,10 @@ static void say_dropped(const struct check *check)
     }
 }
 
-int check_prune(struct check *check)
+/* Gives the exit code. */
+static int save_golden(struct check *check)
 {
+    golden_sort(&check->golden);
     if (check->prune)
         drop_cases(&check->golden, &check->suite);
     if (!check->old.exists && !check->golden.count)
@@ -114,4 +97,22 @@ int check_prune(struct check *check)
                  "people accept at one place",
                  check->golden_path);
     return cli_finish_stdout(EXIT_FINE);
+}
+
+int check_accept(struct check *check)
+{
+    if (!check_reason(check))
+        return EXIT_USAGE;
+    for (uint32_t i = 0; i < check->suite.count; ++i) {
+        struct check_result *result = &check->results[i];
+        if (can_accept(result) && !put_case(check, result))
+            return cli_exit_of(cli_no_memory());
+    }
+    int saved = save_golden(check), noted = saved;
+    for (uint32_t i = 0; saved == EXIT_FINE && i < check->suite.count; ++i) {
+        struct check_result *result = &check->results[i];
+        if (can_accept(result) && !note_accepted(check, result))
+            noted = EXIT_USAGE;
+    }
+    return noted;
 }

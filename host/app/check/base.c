@@ -1,10 +1,13 @@
 #include "app/check/base.h"
 
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/check/cause.h"
-#include "app/check/drawing_difference.h"
+#include "app/check/describe.h"
 #include "base/array.h"
 #include "base/file.h"
 #include "base/path.h"
@@ -74,6 +77,116 @@ void base_close(struct base *base)
     *base = (struct base){.folder = NULL};
 }
 
+/* ---- How two pictures differ ---- */
+
+struct difference {
+    bool same_size;
+    uint64_t others; /* pixels whose colour or hit differs in any bit */
+    uint64_t hits;   /* those of them with another hit */
+    uint32_t x, y;   /* pixel with the largest colour difference, among those with another hit if
+                        there are any */
+};
+
+/* The largest difference of a channel. All NaN are equal; a value that is not finite on one side
+   only is infinitely far off. Below 0: all bits are equal. */
+static double distance_of(const float *a, const float *b, uint32_t channels)
+{
+    double largest = -1.0;
+    for (uint32_t i = 0; i < channels; ++i) {
+        double by = fabs((double)b[i] - (double)a[i]);
+        if (memcmp(&a[i], &b[i], sizeof *a) != 0 && !(isnan(a[i]) && isnan(b[i])))
+            largest = isnan(by) ? INFINITY : fmax(largest, by);
+    }
+    return largest;
+}
+
+static void find_difference(const struct drawing *before, const struct drawing *after,
+                            struct difference *out)
+{
+    whit_image_info a, b;
+    double largest = -2.0;
+    whit_image_get_info(before->color, &a);
+    whit_image_get_info(after->color, &b);
+    *out = (struct difference){.same_size = a.width == b.width && a.height == b.height &&
+                                            a.channels == b.channels};
+    const float *x = whit_image_floats(before->color), *y = whit_image_floats(after->color);
+    const uint32_t *p = whit_image_words(before->ids), *q = whit_image_words(after->ids);
+    size_t pixels = out->same_size ? (size_t)a.width * a.height : 0;
+    for (size_t i = 0; i < pixels; ++i, x += a.channels, y += a.channels, p += 2, q += 2) {
+        bool hit = p[0] != q[0] || p[1] != q[1];
+        double by = distance_of(x, y, a.channels);
+        if (!hit && by < 0.0)
+            continue;
+        ++out->others;
+        if (hit && !out->hits++)
+            largest = -2.0; /* from now on the largest among pixels with another hit */
+        if (!(by > largest) || hit != (out->hits > 0))
+            continue;
+        largest = by;
+        out->x = (uint32_t)(i % a.width);
+        out->y = (uint32_t)(i / a.width);
+    }
+}
+
+/* "214 pixels other, 96 hit something else" */
+static void write_difference(const struct difference *difference, FILE *to)
+{
+    if (!difference->same_size)
+        fprintf(to, "another size");
+    else if (difference->hits)
+        fprintf(to, "%" PRIu64 " pixel%s other, %" PRIu64 " hit%s something else",
+                difference->others, difference->others == 1 ? "" : "s", difference->hits,
+                difference->hits == 1 ? "s" : "");
+    else
+        fprintf(to, "%" PRIu64 " pixel%s other, of the same hits", difference->others,
+                difference->others == 1 ? "" : "s");
+}
+
+struct seen {
+    char hit[400];  /* "ball 5532 at 4.1021" */
+    char value[80]; /* the pixel's colour or count */
+};
+
+static bool probe(const struct drawing *drawing, const struct difference *at, struct seen *out)
+{
+    whit_probe_ray ray;
+    whit_image_info info;
+    whit_instance_info instance;
+    if (drawing_probe(drawing, at->x, at->y, &ray) != WHIT_OK)
+        return false;
+    whit_image_get_info(drawing->color, &info);
+    size_t pixel = (size_t)at->y * info.width + at->x;
+    const float *value = whit_image_floats(drawing->color) + pixel * info.channels;
+    if (info.channels < 3)
+        snprintf(out->value, sizeof out->value, "%.6g", (double)value[0]);
+    else
+        snprintf(out->value, sizeof out->value, "%.6g %.6g %.6g", (double)value[0],
+                 (double)value[1], (double)value[2]);
+    snprintf(out->hit, sizeof out->hit, "nothing");
+    if (ray.device.instance == WHIT_NONE)
+        return true;
+    whit_scene_get_instance(drawing->job.scene, ray.device.instance, &instance);
+    snprintf(out->hit, sizeof out->hit, "%.255s%s%" PRIu32 " at %.5g", instance.name,
+             instance.name[0] ? " " : "#", ray.device.primitive, ray.device.t);
+    return true;
+}
+
+/* Writes "; pixel 212,87: was ball 5532 at 4.1021, is floor 0 at 5.87": the two hits of the pixel,
+   probed by both renderers; nothing where one cannot. Names are as the files have them. */
+static void write_pixel(const struct difference *difference, const struct drawing *before,
+                        const struct drawing *after, FILE *to)
+{
+    struct seen was, is;
+    if (!difference->same_size || !difference->others || !probe(before, difference, &was) ||
+        !probe(after, difference, &is))
+        return;
+    if (strcmp(was.hit, is.hit) != 0)
+        fprintf(to, "; pixel %u,%u: was %s, is %s", difference->x, difference->y, was.hit, is.hit);
+    else
+        fprintf(to, "; pixel %u,%u: %s, was %s, is %s", difference->x, difference->y, is.hit,
+                was.value, is.value);
+}
+
 /* ---- A case as it was ---- */
 
 struct past {
@@ -108,10 +221,10 @@ static whit_result write_all(const struct past *past, const struct studio *studi
                              const struct check_case *item, const struct drawing *drawing, FILE *to)
 {
     const struct job now = studio_input(studio, item, drawing);
-    struct drawing_difference difference;
+    struct difference difference;
     struct cause cause;
-    drawing_difference_find(&past->picture, drawing, &difference);
-    drawing_difference_write(&difference, to);
+    find_difference(&past->picture, drawing, &difference);
+    write_difference(&difference, to);
     fputs("; ", to);
     whit_result result = cause_find(&cause, &past->input, &past->picture, &now);
     if (result == WHIT_OK)
@@ -120,7 +233,7 @@ static whit_result write_all(const struct past *past, const struct studio *studi
     if (result != WHIT_OK)
         return result;
     cli_hush(true);
-    drawing_difference_write_pixel(&difference, &past->picture, drawing, to);
+    write_pixel(&difference, &past->picture, drawing, to);
     cli_hush(false);
     return WHIT_OK;
 }

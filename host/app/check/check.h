@@ -56,6 +56,15 @@ static inline FILE *check_lines(const struct check *check)
    --accept-from. False, with an error, where a report is damaged or does not fit the suite. */
 bool check_read_reports(struct check *check);
 
+/* accept.c: puts the results of the cases that --accept names into the golden, drops with --prune
+   the cases that the suite does not have, and saves it. Prints which cannot be accepted. Gives the
+   exit code. */
+int check_accept(struct check *check);
+
+/* strength.c: --power and --mutate, in place of a check: draws the wanted cases, and prints which
+   faults they notice. Gives the exit code. */
+int strength_run(struct check *check);
+
 /* report.c, junit.c, page.c: reports on all cases that were run. */
 struct json_t;
 struct json_t *check_document(const struct check *check, int status);

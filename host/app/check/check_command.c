@@ -4,10 +4,8 @@
 #include <time.h>
 
 #include "app/arguments.h"
-#include "app/check/accept.h"
 #include "app/check/describe.h"
 #include "app/check/lanes.h"
-#include "app/check/strength.h"
 #include "app/check/thumbnails.h"
 #include "app/commands.h"
 #include "app/document.h"
@@ -562,7 +560,7 @@ static int work(struct check *check)
     if (check->mutate || check->power)
         return strength_run(check);
     if (check->prune && !check->accept.count)
-        return check_prune(check);
+        return check_accept(check);
     whit_result result = find_results(check, &read);
     if (read)
         return end_run(check, result);

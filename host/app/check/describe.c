@@ -81,6 +81,26 @@ size_t drawing_count_hits(const struct drawing *drawing)
     return hits;
 }
 
+whit_result drawing_probe(const struct drawing *drawing, uint32_t x, uint32_t y,
+                          whit_probe_ray *ray)
+{
+    whit_probe_report *report = NULL;
+    whit_probe_ray *rays = NULL;
+    uint32_t count = 0;
+    whit_result result = drawing->reference
+                             ? whit_reference_rays(drawing->reference, x, y, 0, &rays, &count)
+                             : whit_probe(drawing->renderer, x, y, 1, &report);
+    *ray =
+        (whit_probe_ray){.device = {(double)INFINITY, WHIT_NONE, WHIT_NONE}, .material = WHIT_NONE};
+    if (count)
+        *ray = rays[0];
+    else if (report && report->ray_count)
+        *ray = report->rays[0];
+    whit_memory_destroy(rays);
+    whit_probe_report_destroy(report);
+    return result;
+}
+
 /* ---- Parts ---- */
 
 /* Adds a part of the picture's input: `kind` as "mesh", a `name` that is the same in every run, and
@@ -143,8 +163,10 @@ whit_result drawing_describe(const struct drawing *drawing, const struct check_c
                              struct golden *found)
 {
     *found = (struct golden){.exists = true};
-    if (fill(drawing, item, found))
-        return WHIT_OK;
-    golden_finish(found);
-    return cli_no_memory();
+    if (!fill(drawing, item, found)) {
+        golden_finish(found);
+        return cli_no_memory();
+    }
+    golden_sort(found);
+    return WHIT_OK;
 }

@@ -1,4 +1,4 @@
-/* Makes the entry of a golden file from a picture that was drawn. */
+/* What a drawing shows, and the entry of a golden file that is made of it. */
 #ifndef APP_CHECK_DESCRIBE_H
 #define APP_CHECK_DESCRIBE_H
 
@@ -16,6 +16,10 @@ void drawing_color_at(const struct drawing *drawing, size_t pixel, double rgb[3]
 size_t drawing_find_color(const struct drawing *drawing, enum color_of which, double rgb[3]);
 /* The number of pixels whose camera ray hits something. */
 size_t drawing_count_hits(const struct drawing *drawing);
+/* The camera ray of a pixel's first sample, traced again, its hit in ray->device; a miss where a
+   shader's camera() sends none. */
+WHIT_CHECK whit_result drawing_probe(const struct drawing *drawing, uint32_t x, uint32_t y,
+                                     whit_probe_ray *ray);
 
 /* Makes a golden with one case, named like `item`, from a drawing, with its parts.
    WHIT_ERROR_MEMORY, with a message. */

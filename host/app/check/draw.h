@@ -54,10 +54,6 @@ struct job studio_input(const struct studio *studio, const struct check_case *it
                         const struct drawing *drawing);
 /* Whether hits and colours of two pictures are the same bytes. */
 bool drawing_same(const struct drawing *a, const struct drawing *b);
-/* probe.c: the camera ray of a pixel's first sample, its hit in ray->device; a miss where a
-   shader's camera() sends none. */
-WHIT_CHECK whit_result drawing_probe(const struct drawing *drawing, uint32_t x, uint32_t y,
-                                     whit_probe_ray *ray);
 /* Draws an extra picture that is no case of the suite, of `input`: settings, a loaded scene, a
    shader or NULL, and a device, NULL for the reference, all borrowed. The drawing owns the trees
    and the renderer that it needs. Call trial_finish() in any case. */

@@ -51,58 +51,70 @@ uint32_t golden_part_hash(const char *key, uint64_t content)
     return (uint32_t)(hash ^ hash >> 32);
 }
 
-/* The index of the case's part with this hash, or where it would be inserted. */
-static uint32_t place_of_part(const struct golden_case *item, uint32_t hash)
+static int compare_hashes(const void *a, const void *b)
 {
-    uint32_t low = 0, high = item->part_count;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (item->parts[middle] < hash)
-            low = middle + 1;
-        else
-            high = middle;
+    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+static int compare_cases(const void *a, const void *b)
+{
+    return strcmp(((const struct golden_case *)a)->name, ((const struct golden_case *)b)->name);
+}
+
+static int compare_golden_parts(const void *a, const void *b)
+{
+    const struct golden_part *x = a, *y = b;
+    int order = strcmp(x->key, y->key);
+    return order ? order : compare_hashes(&x->hash, &y->hash);
+}
+
+static void sort_hashes(struct golden_case *item)
+{
+    uint32_t kept = 0;
+    if (item->part_count)
+        qsort(item->parts, item->part_count, sizeof *item->parts, compare_hashes);
+    for (uint32_t i = 0; i < item->part_count; ++i) {
+        if (!kept || item->parts[kept - 1] != item->parts[i])
+            item->parts[kept++] = item->parts[i];
     }
-    return low;
+    item->part_count = kept;
+}
+
+void golden_sort(struct golden *golden)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < golden->count; ++i)
+        sort_hashes(&golden->cases[i]);
+    if (golden->count)
+        qsort(golden->cases, golden->count, sizeof *golden->cases, compare_cases);
+    if (golden->part_count)
+        qsort(golden->parts, golden->part_count, sizeof *golden->parts, compare_golden_parts);
+    for (uint32_t i = 0; i < golden->part_count; ++i) {
+        if (kept && compare_golden_parts(&golden->parts[kept - 1], &golden->parts[i]) == 0)
+            free(golden->parts[i].key);
+        else
+            golden->parts[kept++] = golden->parts[i];
+    }
+    golden->part_count = kept;
 }
 
 bool golden_case_has_part(const struct golden_case *item, uint32_t hash)
 {
-    uint32_t at = place_of_part(item, hash);
-    return at < item->part_count && item->parts[at] == hash;
+    return item->part_count &&
+           bsearch(&hash, item->parts, item->part_count, sizeof hash, compare_hashes);
 }
 
 bool golden_case_add_part(struct golden_case *item, uint32_t hash)
 {
-    uint32_t at = place_of_part(item, hash);
-    if (golden_case_has_part(item, hash))
-        return true;
-    if (!ARRAY_PUSH(item->parts, item->part_count, item->capacity, hash))
-        return false;
-    memmove(item->parts + at + 1, item->parts + at,
-            (item->part_count - 1 - at) * sizeof *item->parts);
-    item->parts[at] = hash;
-    return true;
-}
-
-/* The index of the case with this name, or where it would be inserted. */
-static uint32_t place_of(const struct golden *golden, const char *name)
-{
-    uint32_t low = 0, high = golden->count;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (strcmp(golden->cases[middle].name, name) < 0)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    return ARRAY_PUSH(item->parts, item->part_count, item->capacity, hash);
 }
 
 struct golden_case *golden_find(const struct golden *golden, const char *name)
 {
-    uint32_t at = place_of(golden, name);
-    bool there = at < golden->count && strcmp(golden->cases[at].name, name) == 0;
-    return there ? &golden->cases[at] : NULL;
+    const struct golden_case key = {.name = (char *)name};
+    return golden->count ? bsearch(&key, golden->cases, golden->count, sizeof key, compare_cases)
+                         : NULL;
 }
 
 const char *golden_part_key(const struct golden *golden, uint32_t hash)
@@ -137,29 +149,20 @@ static bool copy_case(const struct golden_case *from, struct golden_case *to)
     return whole;
 }
 
-/* Takes over the contents of `item`. */
-static bool insert(struct golden *golden, struct golden_case *item)
-{
-    uint32_t at = place_of(golden, item->name);
-    if (!ARRAY_PUSH(golden->cases, golden->count, golden->capacity, *item))
-        return false;
-    struct golden_case *place = golden->cases + at;
-    memmove(place + 1, place, (golden->count - 1 - at) * sizeof *place);
-    *place = *item;
-    return true;
-}
-
 bool golden_put(struct golden *golden, const struct golden_case *item)
 {
-    struct golden_case copy, *old = golden_find(golden, item->name);
+    struct golden_case copy;
+    uint32_t at = 0;
+    while (at < golden->count && strcmp(golden->cases[at].name, item->name) != 0)
+        ++at;
     if (!copy_case(item, &copy))
         return false;
-    if (old) {
-        golden_case_finish(old);
-        *old = copy;
+    if (at < golden->count) {
+        golden_case_finish(&golden->cases[at]);
+        golden->cases[at] = copy;
         return true;
     }
-    if (insert(golden, &copy))
+    if (ARRAY_PUSH(golden->cases, golden->count, golden->capacity, copy))
         return true;
     golden_case_finish(&copy);
     return false;
@@ -167,29 +170,16 @@ bool golden_put(struct golden *golden, const struct golden_case *item)
 
 bool golden_put_part(struct golden *golden, const char *key, uint32_t hash)
 {
-    uint32_t at = 0;
-    for (; at < golden->part_count; ++at) {
-        int order = strcmp(golden->parts[at].key, key);
-        if (order == 0 && golden->parts[at].hash == hash)
-            return true;
-        if (order > 0 || (order == 0 && golden->parts[at].hash > hash))
-            break;
-    }
-    struct golden_part part = {string_copy(key), hash};
-    if (!part.key || !ARRAY_PUSH(golden->parts, golden->part_count, golden->part_capacity, part)) {
-        free(part.key);
-        return false;
-    }
-    struct golden_part *place = golden->parts + at;
-    memmove(place + 1, place, (golden->part_count - 1 - at) * sizeof *place);
-    *place = part;
-    return true;
+    const struct golden_part part = {string_copy(key), hash};
+    if (part.key && ARRAY_PUSH(golden->parts, golden->part_count, golden->part_capacity, part))
+        return true;
+    free(part.key);
+    return false;
 }
 
 /* ---- Reading ---- */
 
-/* While a file is read, cases and parts are in its order, and parts may be there twice; sort() then
-   puts them in that of a golden. */
+/* While a file is read, cases and parts are in its order, and parts may be there twice. */
 struct reading {
     struct golden *golden;
     struct key_table names; /* index in golden->cases by name */
@@ -256,24 +246,6 @@ static bool same_parts(const struct golden_case *a, const struct golden_case *b)
 {
     return a->part_count == b->part_count &&
            memcmp(a->parts, b->parts, a->part_count * sizeof *a->parts) == 0;
-}
-
-static int compare_hashes(const void *a, const void *b)
-{
-    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return (x > y) - (x < y);
-}
-
-static void sort_hashes(struct golden_case *item)
-{
-    uint32_t kept = 0;
-    if (item->part_count)
-        qsort(item->parts, item->part_count, sizeof *item->parts, compare_hashes);
-    for (uint32_t i = 0; i < item->part_count; ++i) {
-        if (!kept || item->parts[kept - 1] != item->parts[i])
-            item->parts[kept++] = item->parts[i];
-    }
-    item->part_count = kept;
 }
 
 /* Reads a hash of up to eight digits, and moves *text behind it. */
@@ -352,17 +324,10 @@ static bool read_case(struct reading *reading, char *name)
 
 static bool add_part(struct reading *reading, uint32_t hash)
 {
-    struct golden *golden = reading->golden;
-    const struct golden_part part = {string_copy(reading->key), hash};
     reading->key_bytes += strlen(reading->key) + 1;
-    if (reading->key_bytes > GOLDEN_BYTES_MAX) {
-        free(part.key);
+    if (reading->key_bytes > GOLDEN_BYTES_MAX)
         return refuse(reading, "the names of its parts are too long");
-    }
-    if (part.key && ARRAY_PUSH(golden->parts, golden->part_count, golden->part_capacity, part))
-        return true;
-    free(part.key);
-    return refuse(reading, "out of memory");
+    return golden_put_part(reading->golden, reading->key, hash) || refuse(reading, "out of memory");
 }
 
 /* Reads an indented line: a hash of the part being read, or a line that names its case. */
@@ -397,34 +362,6 @@ static bool read_line(struct reading *reading, char *line)
     if (strncmp(line, "<<<<<<<", 7) == 0 || strncmp(line, "=======", 7) == 0)
         return refuse(reading, "a conflict of a merge is left in it");
     return refuse(reading, "`%.40s`: `case NAME` or `part NAME` is needed", line);
-}
-
-static int compare_cases(const void *a, const void *b)
-{
-    return strcmp(((const struct golden_case *)a)->name, ((const struct golden_case *)b)->name);
-}
-
-static int compare_golden_parts(const void *a, const void *b)
-{
-    const struct golden_part *x = a, *y = b;
-    int order = strcmp(x->key, y->key);
-    return order ? order : compare_hashes(&x->hash, &y->hash);
-}
-
-static void sort(struct golden *golden)
-{
-    uint32_t kept = 0;
-    if (golden->count)
-        qsort(golden->cases, golden->count, sizeof *golden->cases, compare_cases);
-    if (golden->part_count)
-        qsort(golden->parts, golden->part_count, sizeof *golden->parts, compare_golden_parts);
-    for (uint32_t i = 0; i < golden->part_count; ++i) {
-        if (kept && compare_golden_parts(&golden->parts[kept - 1], &golden->parts[i]) == 0)
-            free(golden->parts[i].key);
-        else
-            golden->parts[kept++] = golden->parts[i];
-    }
-    golden->part_count = kept;
 }
 
 static bool are_whole(struct reading *reading)
@@ -474,9 +411,8 @@ bool golden_read_text(struct golden *golden, const char *where, char *text, enum
     }
     free(reading.key);
     key_table_finish(&reading.names);
-    sort(golden);
-    whole = whole && are_whole(&reading);
-    return whole;
+    golden_sort(golden);
+    return whole && are_whole(&reading);
 }
 
 bool golden_read(struct golden *golden, const char *path, enum golden_kind kind)

@@ -64,10 +64,13 @@ struct golden_case *golden_find(const struct golden *golden, const char *name);
 /* The key of the part with this hash; NULL: the golden has no such part, though a case names it. */
 const char *golden_part_key(const struct golden *golden, uint32_t hash);
 
-/* Replaces the case named like `item` by a copy of `item`, or inserts the copy. Its parts must be
-   added by golden_put_part. False: out of memory. */
+/* Replaces the case named like `item` by a copy of `item`, or adds the copy. Its parts must be
+   added by golden_put_part. Call golden_sort() before anything is looked up. False: out of memory.
+ */
 bool golden_put(struct golden *golden, const struct golden_case *item);
 bool golden_put_part(struct golden *golden, const char *key, uint32_t hash);
+/* Puts cases, parts and the parts of each case in order, and drops parts that are there twice. */
+void golden_sort(struct golden *golden);
 void golden_remove(struct golden *golden, uint32_t index);
 
 /* "device", "reference"; reports use these words too. */
@@ -79,7 +82,7 @@ char *golden_case_text(const struct golden *golden, const char *name);
 
 /* A part's short hash, of its key and the 64-bit hash of its content. */
 uint32_t golden_part_hash(const char *key, uint64_t content);
-/* Inserts the hash of a part into the case's sorted list. False: out of memory. */
+/* Adds the hash of a part, for golden_sort() to put it in its place. False: out of memory. */
 bool golden_case_add_part(struct golden_case *item, uint32_t hash);
 /* Whether the case lists that hash of a part. */
 bool golden_case_has_part(const struct golden_case *item, uint32_t hash);

@@ -1,10 +1,10 @@
-#include "app/check/strength.h"
-
+/* Which faults the pictures of a suite notice. */
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
 #include "app/check/cause.h"
+#include "app/check/check.h"
 #include "base/random.h"
 
 enum { SEEDS_MAX = 24 };
