@@ -41,6 +41,8 @@ check "relmse: 0.3125 / 0.26 / 6" test "$(value relmse)" = 0.200321
 check "half of the pixels" test "$(value over)" = 0.5
 check "flip is between 0 and 1" holds "$(value flip) > 0.1 && $(value flip) < 1"
 
+expect 0 "JSON on standard output" compare "$A" "$B" --json /dev/stdout
+check "is nothing else" jq -e .rmse "$OUT/stdout"
 expect 0 "one metric" compare "$A" "$B" --metric largest
 check "one metric: one line" test "$(wc -l <"$OUT/stdout")" -eq 1
 expect 0 "within" compare "$A" "$B" --metric largest --tolerance 0.5

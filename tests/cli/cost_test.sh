@@ -129,6 +129,8 @@ JSON
         "^Not here: instances on (.*), instances off (it would copy over a million triangles)" "$OUT/stdout"
 fi
 check "the reference is kept" test "$(find "$OUT/cache" -name 'reference-*' | wc -l)" -ge 2
+expect 0 "JSON on standard output" cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --json /dev/stdout
+check "is nothing else" jq -e .complete "$OUT/stdout"
 expect 0 "one knob" cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$C"
 check "is that knob alone" test "$(grep -c '^fresnel  *schlick ' "$OUT/stdout")" -eq 1
 check "and no other" test "$(grep -c '^aa  ' "$OUT/stdout")" -eq 0

@@ -4,6 +4,7 @@
 #include "app/job.h"
 #include "base/path.h"
 #include <math.h>
+#include <string.h>
 
 enum metric {
     METRIC_RMSE,
@@ -120,7 +121,8 @@ static void print_head(const struct compare *compare)
 static int print_text(const struct compare *compare)
 {
     const whit_difference *found = &compare->found;
-    if (compare->job.settings.quiet)
+    bool piped = compare->json && strcmp(compare->json, "/dev/stdout") == 0;
+    if (compare->job.settings.quiet || piped) /* JSON on standard output has nothing beside it */
         return EXIT_FINE;
     if (compare->has_metric) {
         print_metric(compare, compare->metric);
