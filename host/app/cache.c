@@ -11,8 +11,8 @@
 
 #include "app/cli.h"
 #include "app/document.h"
+#include "base/hash.h"
 #include "base/store.h"
-#include "cost/cost.h"
 
 /* whit keeps at most this many folders of Mesa's cache; Mesa's size limit applies to each. */
 enum { MESA_FOLDERS = 4, MESA_IN_USE_S = 3600 };
@@ -30,7 +30,7 @@ static uint64_t file_hash(const char *path)
         return 0;
     snprintf(text, sizeof text, "%.4000s %lld.%09ld %lld", path, (long long)info.st_mtim.tv_sec,
              info.st_mtim.tv_nsec, (long long)info.st_size);
-    return cost_hash(text);
+    return hash_bytes(HASH_START, text, strlen(text));
 }
 
 /* A hash of the .json files in a folder, or of a single file. The hashes of files are added up,

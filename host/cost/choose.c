@@ -270,8 +270,6 @@ void cost_choice_apply(const struct cost_choice *choice, struct settings *settin
                                                      .count = choice->samples,
                                                      .count_max = choice->samples_most,
                                                      .contrast = choice->contrast};
-    if (choice->bailout > 0.0)
-        settings->picture.bailout = choice->bailout;
 }
 
 void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes)

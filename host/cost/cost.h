@@ -153,8 +153,6 @@ void cost_report_destroy(struct cost_report *report);
 void cost_report_drop_pictures(struct cost_report *report);
 /* The size of a small picture whose time shows how fast the device is at this moment. */
 void cost_small_size(const struct cost_report *report, uint32_t *width, uint32_t *height);
-/* The FNV-1a hash of a text, for names of cached files. */
-uint64_t cost_hash(const char *text);
 
 /* ---- Answers (choose.c) ---- */
 
@@ -182,7 +180,6 @@ struct cost_choice {
     uint32_t samples;                    /* per pixel; 0: as the setting of knob `aa` says */
     double contrast;                     /* above 0: adaptive by it, up to `samples_most` */
     uint32_t samples_most;
-    double bailout;   /* 0: as the setting of knob `bailout` says */
     double ms, error; /* predicted: wall clock at full size; by the goal's metric */
     bool found;
 };

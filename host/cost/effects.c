@@ -13,8 +13,8 @@ static whit_result price_effect(const struct cost_effects *request, uint32_t ind
     effects_set(&params, index, effect->compiled || info.called, !effect->compiled);
     whit_result result = whit_renderer_create(request->device, request->accel, &params, &other);
     if (result == WHIT_OK)
-        result =
-            cost_price(request->usual, NULL, other, NULL, clock, request->rounds, &effect->price);
+        result = cost_price(request->usual, NULL, other, NULL, NULL, clock, request->rounds,
+                            &effect->price);
     if (result == WHIT_OK)
         result = cost_colors(request->usual, other, request->log, &effect->error);
     effect->clock = clock;

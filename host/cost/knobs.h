@@ -23,7 +23,6 @@ enum { KNOB_SETTINGS_MAX = 8 };
 struct knob {
     const char *name;
     const char *setting; /* name of its row in the table of settings; NULL: KNOB_DOUBLE has none */
-    const char *about;   /* description in a few words */
     uint32_t usual;      /* index in `settings` of whit's default */
     uint32_t count;
     struct knob_setting settings[KNOB_SETTINGS_MAX];

@@ -1,6 +1,5 @@
 #include "cost/choose.h"
 #include "cost/rays.h"
-#include "cost/reference.h"
 #include "cost/row.h"
 #include "cost/within.h"
 #include "whit/whit_program.h"
@@ -108,8 +107,9 @@ static whit_result open_renderer(struct measure *measure)
     return WHIT_OK;
 }
 
-whit_result measure_open(struct measure *measure, const struct cost_request *request,
-                         struct cost_report *report)
+/* Makes the renderer, references and rays with which rows are measured. */
+static whit_result open_all(struct measure *measure, const struct cost_request *request,
+                            struct cost_report *report)
 {
     *measure = (struct measure){.request = request, .report = report, .start_ms = whit_clock_ms()};
     measure->usual = *request->settings;
@@ -122,7 +122,7 @@ whit_result measure_open(struct measure *measure, const struct cost_request *req
     return result == WHIT_OK ? measure_judges(measure) : result;
 }
 
-void measure_close(struct measure *measure)
+static void close_all(struct measure *measure)
 {
     whit_image_destroy(measure->references[0]);
     if (measure->request->keep_pictures && !measure->report->reference)
@@ -366,13 +366,13 @@ whit_result cost_measure(const struct cost_request *request, struct cost_report 
     if (!report)
         return WHIT_ERROR_MEMORY;
     describe(request, report);
-    whit_result result = measure_open(&measure, request, report);
+    whit_result result = open_all(&measure, request, report);
     if (result == WHIT_OK)
         result = measure_rows(&measure);
     for (uint32_t i = 0; result == WHIT_OK && i < request->goal_count; ++i)
         result = answer_goal(&measure, &request->goals[i]);
     report->complete = result == WHIT_OK;
-    measure_close(&measure);
+    close_all(&measure);
     report->spent_ms = whit_clock_ms() - measure.start_ms;
     cost_mark_best(report, COST_FLIP);
     bool stopped = result == WHIT_ERROR_CANCELLED || result == WHIT_ERROR_TIME_LIMIT;

@@ -32,10 +32,7 @@ whit_result measure_still_wanted(const struct measure *measure);
 double measure_left_s(const struct measure *measure);
 /* Reports progress; `what`: the current task. */
 void measure_say(const struct measure *measure, const char *what);
-
-/* Makes the renderer, references and rays with which rows are measured. */
-WHIT_CHECK whit_result measure_open(struct measure *measure, const struct cost_request *request,
-                                    struct cost_report *report);
-void measure_close(struct measure *measure);
+/* reference.c: makes both references, at the largest size that `seconds` allow. */
+WHIT_CHECK whit_result measure_references(struct measure *measure, double seconds);
 
 #endif

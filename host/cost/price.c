@@ -96,15 +96,17 @@ static whit_result price(struct pricing *pricing, enum cost_clock clock, uint32_
 
 whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
                        whit_renderer *setting, const whit_renderer_params *second,
-                       enum cost_clock clock, uint32_t rounds, struct cost_price *out)
+                       whit_reference *reference, enum cost_clock clock, uint32_t rounds,
+                       struct cost_price *out)
 {
-    struct pricing pricing = {.renderers = {usual, setting}, .has_device = true};
+    struct pricing pricing = {
+        .renderers = {usual, setting}, .reference = reference, .has_device = true};
     whit_result result = WHIT_OK;
     rounds = rounds < COST_ROUNDS_MAX ? rounds : COST_ROUNDS_MAX;
     *out = (struct cost_price){.rounds = rounds};
     if (first)
         result = whit_renderer_set_view(usual, first);
-    if (result == WHIT_OK && second)
+    if (result == WHIT_OK && second && !reference)
         result = whit_renderer_set_view(setting, second);
     if (result == WHIT_OK)
         result = price(&pricing, clock, rounds, out);
@@ -113,17 +115,6 @@ whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
         out->height = second->height;
     }
     return result;
-}
-
-whit_result cost_price_double(whit_renderer *usual, const whit_renderer_params *first,
-                              whit_reference *reference, enum cost_clock clock, uint32_t rounds,
-                              struct cost_price *out)
-{
-    struct pricing pricing = {.renderers = {usual}, .reference = reference, .has_device = true};
-    rounds = rounds < COST_ROUNDS_MAX ? rounds : COST_ROUNDS_MAX;
-    *out = (struct cost_price){.rounds = rounds, .width = first->width, .height = first->height};
-    whit_result result = whit_renderer_set_view(usual, first);
-    return result == WHIT_OK ? price(&pricing, clock, rounds, out) : result;
 }
 
 whit_result cost_time(whit_renderer *renderer, const whit_renderer_params *view, uint32_t rounds,

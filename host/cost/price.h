@@ -22,15 +22,13 @@ struct cost_price {
 };
 /* Renders both `rounds` times in turns, after one picture each that is not timed. `first`,
    `second`: views that the renderers are set to; NULL: they stay as they are. If both are the same
-   renderer, both views must be given. Stops at the renderers' cancel flag, as for the viewer's
-   price list. */
+   renderer, both views must be given. `reference`: draws in place of `setting`, by `second`, and
+   its device time is its wall clock; or NULL. Stops at the renderers' cancel flag, as for the
+   viewer's price list. */
 WHIT_CHECK whit_result cost_price(whit_renderer *usual, const whit_renderer_params *first,
                                   whit_renderer *setting, const whit_renderer_params *second,
-                                  enum cost_clock clock, uint32_t rounds, struct cost_price *out);
-/* The same for a reference in double, whose device time is its wall clock. */
-WHIT_CHECK whit_result cost_price_double(whit_renderer *usual, const whit_renderer_params *first,
-                                         whit_reference *reference, enum cost_clock clock,
-                                         uint32_t rounds, struct cost_price *out);
+                                  whit_reference *reference, enum cost_clock clock, uint32_t rounds,
+                                  struct cost_price *out);
 /* Times one renderer, set to `view`, `rounds` times after one picture that is not timed. */
 struct cost_times {
     struct sample_median ms[COST_CLOCKS]; /* device: 0 rounds where it is not measured */

@@ -5,9 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/log.h"
 #include "base/store.h"
-#include "cost/reference.h"
+#include "cost/measure.h"
 #include "whit/whit_program.h"
 
 /* KEPT_VERSION is raised when pictures of the reference change, so that cached ones are not
@@ -37,14 +38,6 @@ static whit_renderer_params reference_params(const struct measure *measure, uint
     return params;
 }
 
-uint64_t cost_hash(const char *text)
-{
-    uint64_t hash = UINT64_C(14695981039346656037);
-    for (; *text; ++text)
-        hash = (hash ^ (unsigned char)*text) * UINT64_C(1099511628211);
-    return hash;
-}
-
 enum { KEPT_NAME = 48 };
 static void kept_name(const struct measure *measure, const whit_renderer_params *params,
                       char name[KEPT_NAME])
@@ -54,7 +47,7 @@ static void kept_name(const struct measure *measure, const whit_renderer_params 
              WHIT_VERSION, measure->report->scene_hash, params->width, params->height,
              params->sampling.count, params->depth, params->light_samples, params->time_s,
              measure->usual.camera);
-    snprintf(name, KEPT_NAME, "reference-%016" PRIx64, cost_hash(key));
+    snprintf(name, KEPT_NAME, "reference-%016" PRIx64, hash_bytes(HASH_START, key, strlen(key)));
 }
 
 /* Reads a picture from the cache; NULL: it is not there. */

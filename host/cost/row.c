@@ -150,17 +150,24 @@ static void scale_times(const struct cost_report *report, struct cost_row *row)
     row->ms_high = usual->ms[report->clock] * row->price.ratio[report->clock].high;
 }
 
+/* Prices the target as `renderer` draws it, or the reference in double where that is NULL. `ratio`:
+   expected time of the target / usual time. */
 static whit_result price(struct measure *measure, const struct settings *target,
-                         whit_renderer *renderer, double seconds, double ratio, bool scale,
-                         struct cost_row *row)
+                         whit_renderer *renderer, double end_ms, double ratio, struct cost_row *row)
 {
     uint32_t width, height, rounds;
-    plan(measure, ratio, seconds * 1e3, &width, &height, &rounds);
+    whit_reference *reference = NULL;
+    whit_result result = WHIT_OK;
+    plan(measure, ratio, end_ms - whit_clock_ms(), &width, &height, &rounds);
     const whit_renderer_params first = measure_sized(measure, &measure->usual, width, height);
     const whit_renderer_params second = measure_sized(measure, target, width, height);
-    whit_result result = cost_price(measure->renderer, &first, renderer, &second,
-                                    measure->report->clock, rounds, &row->price);
-    if (result == WHIT_OK && scale)
+    if (!renderer)
+        result = whit_reference_create(measure->request->accel, &second, 0, &reference);
+    if (result == WHIT_OK)
+        result = cost_price(measure->renderer, &first, renderer, &second, reference,
+                            measure->report->clock, rounds, &row->price);
+    whit_reference_destroy(reference);
+    if (result == WHIT_OK && row != &measure->report->rows[0])
         scale_times(measure->report, row);
     return result;
 }
@@ -260,31 +267,13 @@ static whit_result find_out(struct measure *measure, const struct settings *targ
         result = measure_hits(measure, renderer, target, row);
     double usual_ms = measure->usual_pixel_ms * params.width * params.height;
     if (result == WHIT_OK)
-        result = price(measure, target, renderer, (end_ms - whit_clock_ms()) * 1e-3,
-                       fmin(fmax(ms / usual_ms, 0.1), 100.0), true, row);
+        result =
+            price(measure, target, renderer, end_ms, fmin(fmax(ms / usual_ms, 0.1), 100.0), row);
     give_renderer(measure, level, renderer);
     return result;
 }
 
 /* ---- In double ---- */
-
-/* Prices the reference in double, at a size that fits the time. */
-static whit_result price_double(struct measure *measure, const struct settings *target,
-                                double seconds, double ratio, struct cost_row *row)
-{
-    uint32_t width, height, rounds;
-    whit_reference *reference = NULL;
-    plan(measure, ratio, seconds * 1e3, &width, &height, &rounds);
-    const whit_renderer_params sized = measure_sized(measure, target, width, height);
-    whit_result result = whit_reference_create(measure->request->accel, &sized, 0, &reference);
-    if (result == WHIT_OK)
-        result = cost_price_double(measure->renderer, &sized, reference, measure->report->clock,
-                                   rounds, &row->price);
-    whit_reference_destroy(reference);
-    if (result == WHIT_OK)
-        scale_times(measure->report, row);
-    return result;
-}
 
 /* The row "arithmetic double": the usual settings drawn by the reference. It differs from the usual
    row only by the effects of float arithmetic. */
@@ -310,8 +299,7 @@ static whit_result find_out_double(struct measure *measure, const struct setting
     drop(measure, color, ids);
     double usual_ms = measure->usual_pixel_ms * params.width * params.height;
     if (result == WHIT_OK)
-        result =
-            price_double(measure, target, (end_ms - whit_clock_ms()) * 1e-3, ms / usual_ms, row);
+        result = price(measure, target, NULL, end_ms, ms / usual_ms, row);
     return result;
 }
 
@@ -392,8 +380,7 @@ whit_result measure_usual(struct measure *measure, double seconds, struct cost_r
     if (result == WHIT_OK)
         result = measure_still_wanted(measure);
     if (result == WHIT_OK)
-        result = price(measure, &measure->usual, measure->renderer,
-                       (end_ms - whit_clock_ms()) * 1e-3, 1.0, false, row);
+        result = price(measure, &measure->usual, measure->renderer, end_ms, 1.0, row);
     row->measured = result == WHIT_OK;
     return result;
 }

@@ -1,6 +1,5 @@
 /* The best picture within a time. What is given up for time follows a fixed order and not the
    measured error, by which a picture without shadows may be as right as one with shadows. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -157,43 +156,12 @@ static void take(struct search *search)
     }
 }
 
-/* Spends what is left of the time on the bail-out: halves it as long as the limit holds. Time and
-   error are interpolated over the bail-out's logarithm, between two measured rows. */
-static void tighten_bailout(struct search *search)
-{
-    struct cost_choice *best = &search->best;
-    uint32_t knob = knob_find("bailout"), setting = best->settings[knob];
-    const struct knob *bailout = &search->table[knob];
-    const struct effect *effects = search->effects[knob], *b = &effects[setting], *a = NULL;
-    double from = 0.0, to = strtod(knob_setting_name(bailout, setting), NULL);
-    for (uint32_t s = 0; s < bailout->count; ++s) {
-        double value = strtod(knob_setting_name(bailout, s), NULL);
-        if (effects[s].known && value > from && value < to) {
-            from = value;
-            a = &effects[s];
-        }
-    }
-    if (!a || !(a->ratio > b->ratio))
-        return;
-    double ms = best->ms, sum = choose_to_sum(best->error, search->goal->metric);
-    for (double x = 0.5 * to; x > from; x *= 0.5) {
-        double share = log(to / x) / log(to / from);
-        double longer_ms = ms * (1.0 + share * (a->ratio / b->ratio - 1.0));
-        if (longer_ms > search->goal->limit)
-            return;
-        best->bailout = x;
-        best->ms = longer_ms;
-        best->error = choose_from_sum(sum + share * (a->error - b->error), search->goal->metric);
-    }
-}
-
 static void be_careful(struct search *search)
 {
     for (size_t i = 0; i < sizeof careful / sizeof *careful; ++i) {
         uint32_t setting, knob = find(search, &careful[i], &setting);
         const struct effect *effect = &search->effects[knob][setting];
-        double before = search->usual_bias;
-        if (effect->known && effect->error < -CHOOSE_AS_RIGHT * before)
+        if (effect->known && effect->error < -CHOOSE_AS_RIGHT * search->usual_bias)
             search->settings[knob] = (uint8_t)setting;
     }
 }
@@ -214,6 +182,4 @@ void choose_within(struct search *search)
         search->settings[knob] = (uint8_t)setting;
         take(search);
     }
-    if (search->best.found && (!search->goal->edges || search->best.samples == SAMPLES_MOST))
-        tighten_bailout(search);
 }

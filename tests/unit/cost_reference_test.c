@@ -2,7 +2,7 @@
 #include "folder_fixture.h"
 #include "scene_fixture.h"
 
-#include "cost/reference.h"
+#include "cost/measure.h"
 
 enum { SIDE = 64, SAMPLES = 4 };
 static struct cost_report report;

@@ -118,48 +118,9 @@ static uint32_t check_order(const struct cost_choice *choice)
     return last;
 }
 
-/* The time of a bail-out as a multiple of the usual one's; 0: it was not measured. */
-static double bailout_ratio(const char *setting)
-{
-    for (uint32_t i = 1; i < report.row_count; ++i) {
-        const struct cost_row *row = &report.rows[i];
-        if (strcmp(row->knob, "bailout") == 0 && strcmp(row->setting, setting) == 0)
-            return !row->measured       ? 0.0
-                   : row->price.verdict ? row->price.ratio[COST_WALL].median
-                                        : 1.0;
-    }
-    return 0.0;
-}
-
-/* Whether the chosen bail-out lies between two measured ones. Checks that half of it would exceed
-   the limit, by linear interpolation over the logarithm. */
-static bool check_bailout(const struct cost_choice *choice, double limit)
-{
-    struct settings settings = settings_usual();
-    cost_choice_apply(choice, &settings);
-    double x = settings.picture.bailout, low = 1.0 / 1024.0, high = 1.0 / 64.0;
-    if (choice->bailout == 0.0)
-        return false;
-    assert_float_equal(x, choice->bailout, 0.0);
-    assert_float_equal(log2(x), floor(log2(x)), 0.0);
-    double a = 1.0, middle = bailout_ratio("0.015625"), b = middle;
-    if (x > high || middle == 0.0) {
-        a = middle > 0.0 ? middle : 1.0;
-        low = middle > 0.0 ? high : low;
-        high = 0.125;
-        b = bailout_ratio("0.125");
-    }
-    assert_true(x > low && x < high && b > 0.0);
-    double step = log(2.0) / log(high / low);
-    double now = a + (b - a) * log(x / low) / log(high / low);
-    if (0.5 * x > low)
-        assert_true(choice->ms / now * (now + step * (a - b)) > limit);
-    return true;
-}
-
 TEST(nothing_is_given_up_before_what_is_missed_less)
 {
-    uint32_t reached = 0, all = 0, found = 0, between = 0;
+    uint32_t reached = 0, all = 0, found = 0;
     for (int i = 0; i < REPORTS; ++i) {
         make_report();
         uint32_t last = 0;
@@ -174,7 +135,6 @@ TEST(nothing_is_given_up_before_what_is_missed_less)
             /* Another sample would not have fitted. */
             if (choice.samples < SAMPLES_MAX)
                 assert_true(choice.ms * (choice.samples + 1.2) / choice.samples > limit);
-            between += check_bailout(&choice, limit);
             reached = last > reached ? last : reached;
             ++found;
         }
@@ -182,9 +142,7 @@ TEST(nothing_is_given_up_before_what_is_missed_less)
     }
     print_message("  %u choices; all %u things were given up in %u of %d reports\n", found, reached,
                   all, REPORTS);
-    print_message("  %u bail-outs between two that were measured\n", between);
     assert_int_equal(reached, cost_steps());
-    assert_true(between > found / 20);
 }
 
 /* Where edges get more samples, all pixels get a power of 4, and less is given up. */

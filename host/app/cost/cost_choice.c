@@ -183,7 +183,7 @@ static whit_result try_now(const struct choosing *choosing, const struct cost_ch
 static bool is_same(const struct cost_choice *a, const struct cost_choice *b)
 {
     return a->samples == b->samples && a->contrast == b->contrast &&
-           a->samples_most == b->samples_most && a->bailout == b->bailout &&
+           a->samples_most == b->samples_most &&
            memcmp(a->settings, b->settings, sizeof a->settings) == 0;
 }
 

@@ -7,9 +7,10 @@
 
 #include "app/cost/cost_json.h"
 #include "app/cost/cost_kept.h"
+#include "base/hash.h"
 #include "base/store.h"
 
-enum { KEPT_VERSION = 8 };
+enum { KEPT_VERSION = 9 };
 
 /* The record's name is a hash of everything that decides pixels or time (scene, device, driver,
    version of whit, settings), except the settings that are chosen. */
@@ -24,7 +25,7 @@ static void find_name(const struct cost_place *place, char name[COST_KEPT_NAME])
              WHIT_VERSION, place->scene.hash, picture->width, picture->height, picture->time_s,
              picture->tile_size, (int)picture->packets, (int)picture->classes, picture->segments,
              line, place->device.name, place->device.driver);
-    snprintf(name, COST_KEPT_NAME, "cost-%016" PRIx64, cost_hash(key));
+    snprintf(name, COST_KEPT_NAME, "cost-%016" PRIx64, hash_bytes(HASH_START, key, strlen(key)));
 }
 
 void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report)
@@ -74,7 +75,6 @@ static void put_choice(json_t *out, const struct cost_kept_choice *kept)
     document_count(out, "samples", kept->choice.samples);
     document_number(out, "contrast", kept->choice.contrast);
     document_count(out, "samples_most", kept->choice.samples_most);
-    document_number(out, "bailout", kept->choice.bailout);
     json_t *settings = document_child(out, "settings");
     for (uint32_t k = 0; k < count; ++k)
         document_text(settings, table[k].name,
@@ -121,7 +121,6 @@ static bool read_choice(const json_t *object, struct cost_kept_choice *kept)
     kept->choice.samples = (uint32_t)samples;
     kept->choice.samples_most = (uint32_t)most;
     kept->choice.contrast = document_read_number(object, "contrast", 0.0);
-    kept->choice.bailout = document_read_number(object, "bailout", 0.0);
     kept->choice.found = true;
     return kept->budget_ms > 0.0 && kept->choice.contrast >= 0.0 && kept->choice.contrast <= 1.0 &&
            samples >= 1 && samples <= WHIT_SAMPLES_MAX &&
