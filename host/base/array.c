@@ -56,6 +56,12 @@ void *array_alloc_zeroed(size_t count, size_t element_bytes)
     return product(count, element_bytes, &bytes) ? expect_much(calloc(1, bytes), bytes) : NULL;
 }
 
+void *array_copy(const void *data, size_t count, size_t element_bytes)
+{
+    void *copy = data ? array_alloc(count, element_bytes) : NULL;
+    return copy ? memcpy(copy, data, count * element_bytes) : NULL;
+}
+
 void *array_alloc_aligned(size_t count, size_t element_bytes)
 {
     size_t bytes;
@@ -70,13 +76,7 @@ void *array_alloc_aligned(size_t count, size_t element_bytes)
 
 char *string_copy(const char *text)
 {
-    if (!text)
-        return NULL;
-    size_t bytes = strlen(text) + 1;
-    char *copy = malloc(bytes);
-    if (copy)
-        memcpy(copy, text, bytes);
-    return copy;
+    return array_copy(text, text ? strlen(text) + 1 : 0, 1);
 }
 
 char *string_format(const char *format, ...)

@@ -21,6 +21,8 @@ bool array_reserve(void **items, uint32_t count, uint32_t *capacity, size_t elem
 /* calloc/malloc of count * bytes with the product checked; at least one byte. */
 void *array_alloc(size_t count, size_t element_bytes);
 void *array_alloc_zeroed(size_t count, size_t element_bytes);
+/* A copy of `count` elements; NULL gives NULL. */
+void *array_copy(const void *data, size_t count, size_t element_bytes);
 /* 64-byte aligned and zeroed; release with free(). */
 void *array_alloc_aligned(size_t count, size_t element_bytes);
 char *string_copy(const char *text); /* NULL gives NULL */

@@ -46,22 +46,11 @@ struct child {
     bool heard, over; /* the first byte was received; more was received than there is room for */
 };
 
-static bool write_all(int fd, const uint8_t *from, size_t size_bytes)
-{
-    for (size_t done = 0; done < size_bytes;) {
-        ssize_t got = write(fd, from + done, size_bytes - done);
-        if (got <= 0 && errno != EINTR)
-            return false;
-        done += got > 0 ? (size_t)got : 0;
-    }
-    return true;
-}
-
 /* A child_write. `to`: a bool, whether all earlier writes arrived. */
 static bool write_reply(void *to, const void *data, size_t size_bytes)
 {
     bool *whole = to;
-    *whole = *whole && write_all(SANDBOX_REPLY_FD, data, size_bytes);
+    *whole = *whole && platform_write(SANDBOX_REPLY_FD, data, size_bytes);
     return *whole;
 }
 
@@ -90,16 +79,19 @@ static uint64_t mapped_bytes(void)
     return (uint64_t)pages * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
-/* Moves the descriptors to the numbers that the sandbox wants, whether these are in use or not. */
-static bool place_descriptors(const struct child *child)
+bool child_settle(int fd, int at)
 {
-    close(child->read_fd);
-    bool placed = dup2(child->write_fd, SANDBOX_REPLY_FD) == SANDBOX_REPLY_FD;
+    bool placed = dup2(fd, at) == at;
     int nowhere = open("/dev/null", O_RDWR);
-    for (int i = 0; i < SANDBOX_REPLY_FD; ++i) {
+    for (int i = 0; i < at; ++i) {
         if (nowhere < 0 || dup2(nowhere, i) != i)
             close(i);
     }
+    for (int i = 1; i < NSIG; ++i)
+        signal(i, SIG_DFL);
+    signal(SIGINT,
+           SIG_IGN); /* Ctrl+C reaches the whole group; the parent decides what becomes of it */
+    signal(SIGPIPE, SIG_IGN);
     return placed;
 }
 
@@ -107,13 +99,9 @@ static void confine(const struct child *child, const struct child_limits *limits
                     uint64_t already_bytes, pid_t parent)
 {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent || !place_descriptors(child))
+    close(child->read_fd);
+    if (getppid() != parent || !child_settle(child->write_fd, SANDBOX_REPLY_FD))
         _exit(EXIT_FAILURE);
-    for (int i = 1; i < NSIG; ++i)
-        signal(i, SIG_DFL);
-    /* Ctrl+C reaches the whole group; the parent decides what becomes of the child. */
-    signal(SIGINT, SIG_IGN);
-    signal(SIGPIPE, SIG_IGN);
     /* A limit that holds even while the parent is stopped. */
     limit(RLIMIT_CPU, 1 + (uint64_t)fmin(ceil(fmax(limits->cpu_s, 0.0)), 1e6));
     if (LIMIT_ADDRESS_SPACE && limits->memory_bytes)
@@ -129,7 +117,7 @@ static int run_inside(const struct child_limits *limits,
        forbids. */
     (void)mallopt(M_TRIM_THRESHOLD, INT_MAX);
     uint8_t error = (uint8_t)sandbox_enter();
-    if (!write_all(SANDBOX_REPLY_FD, &error, 1) || (error && limits->require_sandbox))
+    if (!platform_write(SANDBOX_REPLY_FD, &error, 1) || (error && limits->require_sandbox))
         return EXIT_OPEN;
     int code = fn(user, &whole, write_reply);
     return whole ? code : EXIT_REPLY;

@@ -16,6 +16,7 @@
 
 #include "base/array.h"
 #include "base/input.h"
+#include "base/platform.h"
 
 /* Paths of unfinished files, and of locks that are held. Code that takes a pointer out of its slot
    owns it, so that the signal handler never reads a string that another thread frees. Slot numbers
@@ -65,44 +66,35 @@ void file_abandon_all(void)
     }
 }
 
-static whit_result read_all(const whit_log *log, const char *path, int fd, uint8_t *data,
-                            size_t size_bytes, size_t *read_bytes)
-{
-    size_t done = 0;
-    while (done < size_bytes) {
-        ssize_t got = read(fd, data + done, size_bytes - done);
-        if (got < 0 && errno == EINTR)
-            continue;
-        if (got < 0) {
-            log_error(log, "%s: cannot read: %s", path, strerror(errno));
-            return WHIT_ERROR_INPUT;
-        }
-        if (got == 0)
-            break;
-        done += (size_t)got;
-    }
-    *read_bytes = done;
-    return WHIT_OK;
-}
-
 static whit_result check_readable(const whit_log *log, const char *path, int fd,
                                   uint64_t limit_bytes, size_t *size_bytes)
 {
     struct stat info;
-    if (fstat(fd, &info) != 0) {
-        log_error(log, "%s: cannot read: %s", path, strerror(errno));
-        return WHIT_ERROR_INPUT;
-    }
-    if (!S_ISREG(info.st_mode)) {
-        log_error(log, "%s: %s", path, reach_words(REACH_NOT_A_FILE));
-        return WHIT_ERROR_INPUT;
-    }
-    if (limit_bytes && (uint64_t)info.st_size > limit_bytes) {
-        log_error(log, "%s: %llu bytes, over the limit of %llu", path,
-                  (unsigned long long)info.st_size, (unsigned long long)limit_bytes);
-        return WHIT_ERROR_INPUT;
-    }
+    if (fstat(fd, &info) != 0)
+        return log_failure(log, WHIT_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
+    if (!S_ISREG(info.st_mode))
+        return log_failure(log, WHIT_ERROR_INPUT, "%s: %s", path, reach_words(REACH_NOT_A_FILE));
+    if (limit_bytes && (uint64_t)info.st_size > limit_bytes)
+        return log_failure(log, WHIT_ERROR_INPUT, "%s: %llu bytes, over the limit of %llu", path,
+                           (unsigned long long)info.st_size, (unsigned long long)limit_bytes);
     *size_bytes = (size_t)info.st_size;
+    return WHIT_OK;
+}
+
+/* Reads an open file of at most *size_bytes, which becomes its size. *data is there where that
+   fails, too. */
+static whit_result read_whole(const whit_log *log, const char *path, int fd, uint8_t **data,
+                              size_t *size_bytes)
+{
+    *data = array_alloc(*size_bytes + 1, 1);
+    if (!*data)
+        return log_failure(log, WHIT_ERROR_MEMORY, "%s: no memory for its %zu bytes", path,
+                           *size_bytes);
+    ssize_t got = platform_read(fd, *data, *size_bytes);
+    if (got < 0)
+        return log_failure(log, WHIT_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
+    (*data)[got] = 0;
+    *size_bytes = (size_t)got;
     return WHIT_OK;
 }
 
@@ -112,13 +104,10 @@ static whit_result copy_input(const whit_log *log, uint8_t **data, size_t *size_
     whit_result result = input_read(log, &input, size_bytes);
     if (result != WHIT_OK)
         return result;
-    *data = array_alloc(*size_bytes + 1, 1);
-    if (*data) {
-        memcpy(*data, input, *size_bytes + 1);
-        return WHIT_OK;
-    }
-    log_error(log, "standard input: no memory for its %zu bytes", *size_bytes);
-    return WHIT_ERROR_MEMORY;
+    *data = array_copy(input, *size_bytes + 1, 1);
+    return *data ? WHIT_OK
+                 : log_failure(log, WHIT_ERROR_MEMORY,
+                               "standard input: no memory for its %zu bytes", *size_bytes);
 }
 
 whit_result file_read(const whit_log *log, const struct roots *roots, const char *path,
@@ -130,33 +119,17 @@ whit_result file_read(const whit_log *log, const struct roots *roots, const char
         return copy_input(log, data, size_bytes);
     enum reach reach;
     int fd = roots_open(roots, path, &reach);
-    if (fd < 0) {
-        log_error(log, "%s: %s", path, reach_words(reach));
-        return WHIT_ERROR_INPUT;
-    }
-    uint8_t *bytes = NULL;
-    size_t expected_bytes = 0;
-    whit_result result = check_readable(log, path, fd, limit_bytes, &expected_bytes);
-    if (result != WHIT_OK)
-        goto fail;
-    bytes = array_alloc(expected_bytes + 1, 1);
-    if (!bytes) {
-        log_error(log, "%s: no memory for its %zu bytes", path, expected_bytes);
-        result = WHIT_ERROR_MEMORY;
-        goto fail;
-    }
-    size_t read_bytes = 0;
-    result = read_all(log, path, fd, bytes, expected_bytes, &read_bytes);
-    if (result != WHIT_OK)
-        goto fail;
-    bytes[read_bytes] = 0;
+    if (fd < 0)
+        return log_failure(log, WHIT_ERROR_INPUT, "%s: %s", path, reach_words(reach));
+    whit_result result = check_readable(log, path, fd, limit_bytes, size_bytes);
+    if (result == WHIT_OK)
+        result = read_whole(log, path, fd, data, size_bytes);
     close(fd);
-    *data = bytes;
-    *size_bytes = read_bytes;
-    return WHIT_OK;
-fail:
-    free(bytes);
-    close(fd);
+    if (result != WHIT_OK) {
+        free(*data);
+        *data = NULL;
+        *size_bytes = 0;
+    }
     return result;
 }
 

@@ -56,10 +56,8 @@ whit_result input_read(const whit_log *log, const uint8_t **data, size_t *size_b
         why_not = read_to_end(&kept, &kept_bytes);
     was_read = true;
     pthread_mutex_unlock(&lock);
-    if (why_not) {
-        log_error(log, "standard input: %s", why_not);
-        return WHIT_ERROR_INPUT;
-    }
+    if (why_not)
+        return log_failure(log, WHIT_ERROR_INPUT, "standard input: %s", why_not);
     *data = kept;
     *size_bytes = kept_bytes;
     return WHIT_OK;

@@ -1,4 +1,4 @@
-/* PR_SET_PDEATHSIG, SOCK_CLOEXEC and close_range are Linux's own. */
+/* PR_SET_PDEATHSIG and SOCK_CLOEXEC are Linux's own. */
 #define _GNU_SOURCE
 #include "base/keep.h"
 
@@ -11,11 +11,12 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/platform.h"
+#include "base/sandbox.h"
 
 enum { SOCKET_FD = 3, POLL_MS = 10, GRACE_S = 5 };
 
@@ -47,52 +48,22 @@ static void on_parent_end(int number)
         _exit(0);
 }
 
-static void close_from(int first)
+static bool settle(int fd, const sigset_t *before)
 {
-    if (syscall(SYS_close_range, first, ~0u, 0) == 0)
-        return;
-    long max = sysconf(_SC_OPEN_MAX);
-    for (int fd = first; fd < max; ++fd)
-        close(fd);
-}
-
-static bool place_descriptors(int fd)
-{
-    bool placed = dup2(fd, SOCKET_FD) == SOCKET_FD;
-    int nowhere = open("/dev/null", O_RDWR);
-    for (int i = 0; i < SOCKET_FD; ++i) {
-        if (nowhere < 0 || dup2(nowhere, i) != i)
-            close(i);
-    }
-    close_from(SOCKET_FD + 1);
+    bool placed = child_settle(fd, SOCKET_FD);
+    sandbox_close_from(SOCKET_FD + 1);
     /* Children put a pipe at that number, so the socket moves to a number that they close. */
     int above = fcntl(SOCKET_FD, F_DUPFD_CLOEXEC, SOCKET_FD + 1);
     close(SOCKET_FD);
-    return placed && above == SOCKET_FD + 1;
-}
-
-static void settle(const sigset_t *before)
-{
-    for (int i = 1; i < NSIG; ++i)
-        signal(i, SIG_DFL);
-    signal(SIGINT, SIG_IGN); /* Ctrl+C reaches the whole group */
-    signal(SIGPIPE, SIG_IGN);
     signal(SIGUSR1, on_parent_end);
     prctl(PR_SET_PDEATHSIG, SIGUSR1);
     pthread_sigmask(SIG_SETMASK, before, NULL);
-    if (getppid() != parent)
-        _exit(0);
+    return placed && above == SOCKET_FD + 1 && getppid() == parent;
 }
 
-static bool read_all(int fd, void *to, size_t bytes)
+static bool read_whole(int fd, void *to, size_t bytes)
 {
-    for (size_t done = 0; done < bytes;) {
-        ssize_t got = read(fd, (char *)to + done, bytes - done);
-        if (got == 0 || (got < 0 && errno != EINTR))
-            return false;
-        done += got > 0 ? (size_t)got : 0;
-    }
-    return true;
+    return platform_read(fd, to, bytes) == (ssize_t)bytes;
 }
 
 static bool send_all(int fd, const void *from, size_t bytes)
@@ -123,10 +94,10 @@ static bool serve_one(const struct keep_work *work)
     const int fd = SOCKET_FD + 1;
     struct request_head head;
     struct reply_head out = {.end = CHILD_NOT_STARTED};
-    if (!read_all(fd, &head, sizeof head))
+    if (!read_whole(fd, &head, sizeof head))
         return false;
     struct job job = {work, malloc(head.bytes + 1), head.bytes};
-    bool whole = job.request && read_all(fd, job.request, head.bytes);
+    bool whole = job.request && read_whole(fd, job.request, head.bytes);
     if (whole) {
         head.limits.cancel = NULL;
         out.end = child_run(&head.limits, do_job, &job, &out.reply);
@@ -143,9 +114,8 @@ static bool serve_one(const struct keep_work *work)
 
 static void serve(const struct keep_work *work, int fd, const sigset_t *before)
 {
-    if (!place_descriptors(fd))
+    if (!settle(fd, before))
         _exit(1);
-    settle(before);
     if (work->prepare)
         work->prepare();
     while (serve_one(work))
@@ -217,7 +187,7 @@ static enum child_end take_reply(const struct keep *keep, const struct child_lim
                                  struct child_reply *reply, bool *alive)
 {
     struct reply_head head;
-    *alive = read_all(keep->fd, &head, sizeof head);
+    *alive = read_whole(keep->fd, &head, sizeof head);
     if (!*alive)
         return CHILD_NOT_STARTED;
     *reply = head.reply;
@@ -232,7 +202,7 @@ static enum child_end take_reply(const struct keep *keep, const struct child_lim
     if (data == MAP_FAILED)
         return CHILD_NOT_STARTED;
     reply->data = data;
-    *alive = read_all(keep->fd, data, head.reply.size_bytes);
+    *alive = read_whole(keep->fd, data, head.reply.size_bytes);
     if (*alive)
         return CHILD_DONE;
     child_reply_free(reply);

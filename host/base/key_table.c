@@ -114,10 +114,9 @@ bool key_table_add(struct key_table *table, const void *key, size_t key_bytes, u
 {
     if (2 * table->count >= table->slot_count && !grow(table))
         return false;
-    void *copy = array_alloc(key_bytes, 1);
+    void *copy = array_copy(key, key_bytes, 1);
     if (!copy)
         return false;
-    memcpy(copy, key, key_bytes);
     uint64_t hash = hash_key(key, key_bytes);
     *find_slot(table, key, key_bytes, hash) = (struct key_table_slot){copy, key_bytes, hash, value};
     table->count++;

@@ -2,13 +2,13 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/array.h"
 #include "base/file.h"
 
 static enum lock_end fail(const whit_log *log, struct lock *lock, int reason)
@@ -31,11 +31,9 @@ static bool is_current(const struct lock *lock)
 
 enum lock_end lock_take(const whit_log *log, const char *path, struct lock *lock)
 {
-    size_t bytes = strlen(path) + sizeof ".lock";
-    *lock = (struct lock){.path = malloc(bytes)};
+    *lock = (struct lock){.path = string_format("%s.lock", path)};
     if (!lock->path)
         return fail(log, lock, ENOMEM);
-    snprintf(lock->path, bytes, "%s.lock", path);
     for (;;) {
         lock->file = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
         if (lock->file < 0)

@@ -11,19 +11,33 @@ whit_log log_or_silence(const whit_log *log)
     return log ? *log : (whit_log){0};
 }
 
-void log_message(const whit_log *log, whit_log_level level, const char *format, ...)
+static void show(const whit_log *log, whit_log_level level, const char *format, va_list args)
 {
     if (!log || !log->fn || level > log->level)
         return;
     char text[2048], shown[4 * sizeof text];
-    va_list args;
-    va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
-    va_end(args);
     whit_text_show(text, shown, sizeof shown);
     pthread_mutex_lock(&log_mutex);
     log->fn(log->user, level, shown);
     pthread_mutex_unlock(&log_mutex);
+}
+
+void log_message(const whit_log *log, whit_log_level level, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    show(log, level, format, args);
+    va_end(args);
+}
+
+whit_result log_failure(const whit_log *log, whit_result result, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    show(log, WHIT_LOG_ERROR, format, args);
+    va_end(args);
+    return result;
 }
 
 const char *whit_result_name(whit_result result)

@@ -10,6 +10,10 @@ whit_log log_or_silence(const whit_log *log);
 void log_message(const whit_log *log, whit_log_level level, const char *format, ...)
     WHIT_PRINTF(3, 4);
 
+/* Logs an error, and gives `result`. */
+whit_result log_failure(const whit_log *log, whit_result result, const char *format, ...)
+    WHIT_PRINTF(3, 4);
+
 #define log_error(log, ...)   log_message((log), WHIT_LOG_ERROR, __VA_ARGS__)
 #define log_warning(log, ...) log_message((log), WHIT_LOG_WARNING, __VA_ARGS__)
 #define log_info(log, ...)    log_message((log), WHIT_LOG_INFO, __VA_ARGS__)

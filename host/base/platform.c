@@ -1,5 +1,6 @@
 #include "base/platform.h"
 
+#include <errno.h>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -65,6 +66,35 @@ bool platform_reads_back_slowly(void)
 #else
     return false;
 #endif
+}
+
+bool platform_has_room(size_t bytes)
+{
+    void *room = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
+                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    return room != MAP_FAILED && munmap(room, bytes) == 0;
+}
+
+ssize_t platform_read(int fd, void *data, size_t bytes)
+{
+    size_t done = 0;
+    for (ssize_t got = 1; got != 0 && done<bytes; done += got> 0 ? (size_t)got : 0) {
+        got = read(fd, (char *)data + done, bytes - done);
+        if (got < 0 && errno != EINTR)
+            return -1;
+    }
+    return (ssize_t)done;
+}
+
+bool platform_write(int fd, const void *data, size_t bytes)
+{
+    for (size_t done = 0; done < bytes;) {
+        ssize_t put = write(fd, (const char *)data + done, bytes - done);
+        if (put == 0 || (put < 0 && errno != EINTR))
+            return false;
+        done += put > 0 ? (size_t)put : 0;
+    }
+    return true;
 }
 
 uint64_t platform_peak_memory_bytes(void)

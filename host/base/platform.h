@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 #include "whit/whit_base.h"
 
@@ -26,6 +27,15 @@ void platform_zero(void *data, size_t size_bytes);
 /* Whether the processor takes long to read an element of a vector of 64 bytes that was just
    written: on Intel's with AVX-512 3.5 ns, where two vectors of 32 bytes take 1.5. */
 bool platform_reads_back_slowly(void);
+
+/* Whether there is address space for so many bytes more. */
+bool platform_has_room(size_t bytes);
+
+/* Reads up to the end of the file, at most `bytes`, whatever signals come; gives how many, or -1
+   with errno. */
+ssize_t platform_read(int fd, void *data, size_t bytes);
+/* Writes all of it, whatever signals come. False, with errno: it could not. */
+bool platform_write(int fd, const void *data, size_t bytes);
 
 /* The largest resident memory that this process, or any one of its finished children, has had. */
 uint64_t platform_peak_memory_bytes(void);

@@ -130,19 +130,19 @@ static int give_up_shared_memory(void)
     return 0;
 }
 
-static void close_the_rest(void)
+void sandbox_close_from(int first)
 {
-    if (syscall(SYS_close_range, SANDBOX_FD_COUNT, ~0u, 0) == 0)
+    if (syscall(SYS_close_range, first, ~0u, 0) == 0)
         return;
     long max = sysconf(_SC_OPEN_MAX);
-    for (int fd = SANDBOX_FD_COUNT; fd < max; ++fd)
+    for (int fd = first; fd < max; ++fd)
         close(fd);
 }
 
 int sandbox_enter(void)
 {
     const struct rlimit files = {SANDBOX_FD_COUNT, SANDBOX_FD_COUNT}, none = {0, 0};
-    close_the_rest();
+    sandbox_close_from(SANDBOX_FD_COUNT);
     int shared = give_up_shared_memory();
     (void)prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
     give_up_files();

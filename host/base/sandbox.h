@@ -12,5 +12,7 @@ enum { SANDBOX_REPLY_FD = 3, SANDBOX_FD_COUNT };
    it has then given up all that needs no filter. For processes of one thread; a debugger defeats
    it. */
 int sandbox_enter(void);
+/* Closes all descriptors from this number on. */
+void sandbox_close_from(int first);
 
 #endif

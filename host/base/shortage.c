@@ -1,20 +1,12 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
+#include "base/platform.h"
 #include "whit/whit_program.h"
 
 enum { ROOM_FILES = 16 }; /* file descriptors that a driver may need at once */
-
-static bool has_memory(size_t bytes)
-{
-    void *room = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
-                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    return room != MAP_FAILED && munmap(room, bytes) == 0;
-}
 
 static bool has_files(void)
 {
@@ -31,9 +23,9 @@ static bool has_files(void)
 const char *whit_shortage(uint64_t room_bytes)
 {
     int reason = errno;
-    const char *lacks = !has_memory((size_t)room_bytes) ? "out of memory"
-                        : !has_files()                  ? "too many open files"
-                                                        : NULL;
+    const char *lacks = !platform_has_room((size_t)room_bytes) ? "out of memory"
+                        : !has_files()                         ? "too many open files"
+                                                               : NULL;
     errno = reason;
     return lacks;
 }

@@ -13,6 +13,7 @@
 
 #include "base/array.h"
 #include "base/hash.h"
+#include "base/platform.h"
 
 /* The header at the start of each cache file. */
 struct header {
@@ -131,15 +132,9 @@ static bool is_own_file(const struct stat *info)
            !(info->st_mode & 022);
 }
 
-static bool read_all(int fd, void *data, size_t size_bytes)
+static bool read_whole(int fd, void *data, size_t size_bytes)
 {
-    for (size_t done = 0; done < size_bytes;) {
-        ssize_t got = read(fd, (char *)data + done, size_bytes - done);
-        if (got == 0 || (got < 0 && errno != EINTR))
-            return false;
-        done += got > 0 ? (size_t)got : 0;
-    }
-    return true;
+    return platform_read(fd, data, size_bytes) == (ssize_t)size_bytes;
 }
 
 static uint64_t hash_of(const char *name, const void *data, size_t size_bytes)
@@ -151,14 +146,14 @@ static bool read_checked(int fd, const char *name, uint8_t **data, size_t *size_
 {
     struct stat info;
     struct header header;
-    if (fstat(fd, &info) != 0 || !is_own_file(&info) || !read_all(fd, &header, sizeof header) ||
+    if (fstat(fd, &info) != 0 || !is_own_file(&info) || !read_whole(fd, &header, sizeof header) ||
         memcmp(header.magic, magic, sizeof magic) != 0 ||
         header.data_bytes != (uint64_t)info.st_size - sizeof header ||
         header.data_bytes > limit_bytes())
         return false;
     size_t bytes = (size_t)header.data_bytes;
     uint8_t *read = array_alloc(bytes + 1, 1);
-    if (!read || !read_all(fd, read, bytes) || hash_of(name, read, bytes) != header.hash) {
+    if (!read || !read_whole(fd, read, bytes) || hash_of(name, read, bytes) != header.hash) {
         free(read);
         return false;
     }
@@ -201,17 +196,6 @@ bool store_read(const whit_log *log, const char *name, uint8_t **data, size_t *s
 }
 
 /* ---- Writing ---- */
-
-static bool write_all(int fd, const void *data, size_t size_bytes)
-{
-    for (size_t done = 0; done < size_bytes;) {
-        ssize_t put = write(fd, (const char *)data + done, size_bytes - done);
-        if (put == 0 || (put < 0 && errno != EINTR))
-            return false;
-        done += put > 0 ? (size_t)put : 0;
-    }
-    return true;
-}
 
 /* Whether `name` is ".NAME.PID.tmp" or ".NAME.PID.COUNT.tmp" of a process that no longer exists. */
 static bool is_leftover(const char *name)
@@ -286,7 +270,7 @@ static bool replace(int folder, const char *name, const void *data, size_t size_
     int fd = openat(folder, temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
     if (fd < 0)
         return false;
-    bool whole = write_all(fd, &header, sizeof header) && write_all(fd, data, size_bytes);
+    bool whole = platform_write(fd, &header, sizeof header) && platform_write(fd, data, size_bytes);
     whole = close(fd) == 0 && whole && renameat(folder, temporary, folder, name) == 0;
     if (!whole)
         (void)unlinkat(folder, temporary, 0);

@@ -3,8 +3,9 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
-#include <sys/mman.h>
 #include <unistd.h>
+
+#include "base/platform.h"
 
 enum { THREADS_MAX = 64 };
 
@@ -29,10 +30,7 @@ bool threads_have_room(uint32_t count)
         (void)pthread_attr_getstacksize(&usual, &stack_bytes);
         pthread_attr_destroy(&usual);
     }
-    size_t bytes = count * stack_bytes;
-    void *room = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
-                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    return room != MAP_FAILED && munmap(room, bytes) == 0;
+    return platform_has_room(count * stack_bytes);
 }
 
 static void *run(void *user)
