@@ -4,6 +4,7 @@
 #define BASE_COLOR_H
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "base/same.h"
 
@@ -15,6 +16,12 @@ static inline double srgb_from_linear(double linear)
 static inline double linear_from_srgb(double srgb)
 {
     return srgb <= 0.04045 ? srgb / 12.92 : same_pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+/* Whether no channel is above 0. */
+static inline bool color_is_black(const float rgb[3])
+{
+    return !(rgb[0] > 0.0f || rgb[1] > 0.0f || rgb[2] > 0.0f);
 }
 
 static inline double color_luminance(const float rgb[3])

@@ -14,6 +14,7 @@ void log_message(const whit_log *log, whit_log_level level, const char *format, 
 whit_result log_failure(const whit_log *log, whit_result result, const char *format, ...)
     WHIT_PRINTF(3, 4);
 
+#define log_usage(log, ...)   log_failure((log), WHIT_ERROR_USAGE, __VA_ARGS__)
 #define log_error(log, ...)   log_message((log), WHIT_LOG_ERROR, __VA_ARGS__)
 #define log_warning(log, ...) log_message((log), WHIT_LOG_WARNING, __VA_ARGS__)
 #define log_info(log, ...)    log_message((log), WHIT_LOG_INFO, __VA_ARGS__)

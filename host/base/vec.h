@@ -4,6 +4,7 @@
 #define BASE_VEC_H
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -175,6 +176,37 @@ static inline void double3_unit(double v[3])
     double length = sqrt(double3_dot(v, v));
     for (int i = 0; length > 0.0 && i < 3; ++i)
         v[i] /= length;
+}
+
+/* Makes v unit, whatever its size. False, with v unchanged: it is 0 or not finite. */
+static inline bool double3_normalize(double v[3])
+{
+    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    if (!(largest > 0.0) || !isfinite(largest))
+        return false;
+    for (int i = 0; i < 3; ++i)
+        v[i] /= largest;
+    double length = double3_length(v);
+    for (int i = 0; i < 3; ++i)
+        v[i] /= length;
+    return true;
+}
+
+/* Boxes from lo to hi: an empty one, and one that grows by a point. */
+static inline void double3_no_box(double lo[3], double hi[3])
+{
+    for (int i = 0; i < 3; ++i) {
+        lo[i] = INFINITY;
+        hi[i] = -INFINITY;
+    }
+}
+
+static inline void double3_grow_box(double lo[3], double hi[3], const double at[3])
+{
+    for (int i = 0; i < 3; ++i) {
+        lo[i] = fmin(lo[i], at[i]);
+        hi[i] = fmax(hi[i], at[i]);
+    }
 }
 
 #endif

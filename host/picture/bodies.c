@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/color.h"
 #include "base/hash.h"
 #include "base/vec.h"
 
@@ -17,8 +18,7 @@ enum { PAIRS_MAX = 1 << 23 };
 
 bool bodies_bounded_by(const struct scene_material *m)
 {
-    return !m->thin_walled && m->model != WHIT_MODEL_UNLIT &&
-           (m->transmission[0] > 0 || m->transmission[1] > 0 || m->transmission[2] > 0);
+    return !m->thin_walled && m->model != WHIT_MODEL_UNLIT && !color_is_black(m->transmission);
 }
 
 /* ---- What there is ---- */
@@ -33,10 +33,9 @@ static void grow(struct body *body, const float at[3], float radius)
 
 static struct body empty_body(uint32_t material)
 {
-    return (struct body){.material = material,
-                         .sphere = SCENE_NONE,
-                         .lo = {DBL_MAX, DBL_MAX, DBL_MAX},
-                         .hi = {-DBL_MAX, -DBL_MAX, -DBL_MAX}};
+    struct body body = {.material = material, .sphere = SCENE_NONE};
+    double3_no_box(body.lo, body.hi);
+    return body;
 }
 
 static struct body *body_of(struct bodies *bodies, uint32_t first, uint32_t material)
@@ -90,11 +89,9 @@ static struct body place_body(const struct body *body, const struct affine *plac
         for (int k = 0; k < 3; ++k)
             at[k] = corner >> k & 1 ? body->hi[k] : body->lo[k];
         affine_point(placed, at, to);
-        for (int k = 0; k < 3; ++k) {
-            out.lo[k] = fmin(out.lo[k], to[k]);
-            out.hi[k] = fmax(out.hi[k], to[k]);
+        double3_grow_box(out.lo, out.hi, to);
+        for (int k = 0; k < 3; ++k)
             size = fmax(size, fabs(to[k]));
-        }
     }
     out.sphere = body->sphere;
     out.rounding = size * 64.0 * FLT_EPSILON;
@@ -136,7 +133,10 @@ bool bodies_list(const struct scene *scene, const struct scene_pose *pose, struc
         return true;
     bodies_finish(bodies);
     bodies->pose_hash = hash;
-    return list_all(scene, pose, bodies);
+    bool fine = list_all(scene, pose, bodies);
+    if (!fine)
+        bodies_finish(bodies); /* half a list must not be taken for a whole one */
+    return fine;
 }
 
 void bodies_finish(struct bodies *bodies)
@@ -241,16 +241,14 @@ static double surface_distance(const struct bodies *bodies, const struct surface
 
 /* ---- Surfaces of bodies ---- */
 
-static void set_box(struct surface *s, int corners, double radius, double rounding)
+static void set_box(struct surface *s, double rounding)
 {
+    double3_no_box(s->lo, s->hi);
+    for (int i = 0; i < 3; ++i)
+        double3_grow_box(s->lo, s->hi, s->corners[i]);
     for (int k = 0; k < 3; ++k) {
-        s->lo[k] = s->hi[k] = s->corners[0][k];
-        for (int i = 1; i < corners; ++i) {
-            s->lo[k] = fmin(s->lo[k], s->corners[i][k]);
-            s->hi[k] = fmax(s->hi[k], s->corners[i][k]);
-        }
-        s->lo[k] -= radius + rounding;
-        s->hi[k] += radius + rounding;
+        s->lo[k] -= rounding;
+        s->hi[k] += rounding;
     }
 }
 
@@ -303,10 +301,8 @@ struct near {
 
 static void near_add(struct near *near, const struct body *other)
 {
-    for (int k = 0; k < 3; ++k) {
-        near->lo[k] = fmin(near->lo[k], other->lo[k]);
-        near->hi[k] = fmax(near->hi[k], other->hi[k]);
-    }
+    double3_grow_box(near->lo, near->hi, other->lo);
+    double3_grow_box(near->lo, near->hi, other->hi);
 }
 
 /* Adds the triangles of one instance that lie within `within` of the `near` box of their body. */
@@ -331,7 +327,7 @@ static bool add_triangles(const struct scene *scene, const struct scene_pose *po
             affine_point(&pose->instances[instance], (const double[3]){p[0], p[1], p[2]},
                          s.corners[k]);
         }
-        set_box(&s, 3, 0.0, bodies->all[body].rounding);
+        set_box(&s, bodies->all[body].rounding);
         if (boxes_meet(s.lo, s.hi, nears[body].lo, nears[body].hi, within) &&
             !ARRAY_PUSH(out->all, out->count, out->capacity, s))
             return false;
@@ -449,10 +445,7 @@ static double search(const struct scene *scene, const struct scene_pose *pose,
     bool fine = nears && ranked, any = false;
     double gap = 0.0;
     for (uint32_t i = 0; fine && i < bodies->count; ++i)
-        for (int k = 0; k < 3; ++k) {
-            nears[i].lo[k] = INFINITY;
-            nears[i].hi[k] = -INFINITY;
-        }
+        double3_no_box(nears[i].lo, nears[i].hi);
     if (fine)
         gap = sweep_bodies(scene, pose, bodies, ranked, within, nears, &any);
     if (fine && any && gap > 0.0)
@@ -468,15 +461,14 @@ static double search(const struct scene *scene, const struct scene_pose *pose,
 bool bodies_come_within(const struct scene *scene, const struct scene_pose *pose,
                         struct bodies *bodies, double distance_max)
 {
-    enum {
-        ROOM = 4
-    }; /* searches farther than needed, so that a camera that moves away needs no
-          new search for each picture */
+    /* Searches farther than needed, so that a camera that moves away needs no new search for each
+       picture. */
+    const double room = 4.0;
     if (bodies->count < 2)
         return false;
     if (bodies->gap > 0.0 || bodies->searched == 0.0) {
         if (!(distance_max < bodies->searched)) {
-            bodies->searched = ROOM * distance_max;
+            bodies->searched = room * distance_max;
             bodies->gap = search(scene, pose, bodies, bodies->searched);
         }
     }

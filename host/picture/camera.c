@@ -11,28 +11,10 @@
 #include "base/vec.h"
 #include "picture/sequence.h"
 
-static void subtract(const double a[3], const double b[3], double out[3])
-{
-    for (int i = 0; i < 3; ++i)
-        out[i] = a[i] - b[i];
-}
-
 static bool fits_floats(const double v[3])
 {
     return fabs(v[0]) <= (double)FLT_MAX && fabs(v[1]) <= (double)FLT_MAX &&
            fabs(v[2]) <= (double)FLT_MAX;
-}
-
-/* False for the zero vector and for one that is not finite. */
-static bool normalize(double v[3])
-{
-    double size = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-    if (!(size > 0.0) || !isfinite(size))
-        return false;
-    double x = v[0] / size, y = v[1] / size, z = v[2] / size;
-    double length = sqrt(x * x + y * y + z * z);
-    v[0] = x / length, v[1] = y / length, v[2] = z / length;
-    return true;
 }
 
 static bool is_index(const char *text, uint32_t count, uint32_t *index)
@@ -86,23 +68,23 @@ static void scale_to_float(const double v[3], double scale, float out[3])
 static bool make_basis(const struct scene_camera *camera, double forward[3], double right[3],
                        double up[3])
 {
-    subtract(camera->target, camera->eye, forward);
-    if (!normalize(forward))
+    for (int i = 0; i < 3; ++i)
+        forward[i] = camera->target[i] - camera->eye[i];
+    if (!double3_normalize(forward))
         return false;
     double wanted[3] = {camera->up[0], camera->up[1], camera->up[2]};
-    if (!normalize(wanted))
+    if (!double3_normalize(wanted))
         wanted[0] = 0.0, wanted[1] = 1.0, wanted[2] = 0.0;
     double3_cross(forward, wanted, right);
-    double sine2 = right[0] * right[0] + right[1] * right[1] + right[2] * right[2];
-    if (sine2 < 1e-24) {
+    if (double3_dot(right, right) < 1e-24) {
         int axis = fabs(forward[2]) < 0.5 ? 2 : 0;
         double other[3] = {axis == 0, 0.0, axis == 2};
         double3_cross(forward, other, right);
     }
-    if (!normalize(right))
+    if (!double3_normalize(right))
         return false;
     double3_cross(right, forward, up);
-    return normalize(up);
+    return double3_normalize(up);
 }
 
 static double length3(const float v[3])
@@ -148,11 +130,8 @@ static uint32_t kind_code(const struct scene_camera *camera)
 
 static double focus_distance(const struct scene_camera *camera)
 {
-    double view[3];
-    subtract(camera->target, camera->eye, view);
-    return camera->focus_distance > 0.0f
-               ? (double)camera->focus_distance
-               : sqrt(view[0] * view[0] + view[1] * view[1] + view[2] * view[2]);
+    return camera->focus_distance > 0.0f ? (double)camera->focus_distance
+                                         : double3_distance(camera->target, camera->eye);
 }
 
 whit_result camera_frame(const whit_log *log, const struct scene_pose *pose,
@@ -293,11 +272,7 @@ static void camera_line(const struct gpu_frame *frame, uint32_t kind, const floa
 /* The twin of inverse_square_root in shaders/lib/angles.glsl. */
 static float inverse_square_root(float x)
 {
-    float y, half_x = 0.5f * x;
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    bits = 0x5f375a86u - (bits >> 1);
-    memcpy(&y, &bits, sizeof y);
+    float y = float_of_bits(0x5f375a86u - (float_bits(x) >> 1)), half_x = 0.5f * x;
     for (int i = 0; i < 4; ++i)
         y = y * (1.5f - (half_x * y) * y);
     return y;

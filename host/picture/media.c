@@ -130,12 +130,8 @@ static bool look_around(const struct accel *accel, const float eye[3], int direc
 static int32_t times_inside(const struct around *around)
 {
     const int32_t *n = around->left;
-    int32_t middle = n[0] > n[1] ? (n[1] > n[2]   ? n[1]
-                                    : n[0] < n[2] ? n[0]
-                                                  : n[2])
-                                 : (n[0] > n[2]   ? n[0]
-                                    : n[1] < n[2] ? n[1]
-                                                  : n[2]);
+    int32_t low = n[0] < n[1] ? n[0] : n[1], high = n[0] < n[1] ? n[1] : n[0];
+    int32_t middle = n[2] < low ? low : n[2] > high ? high : n[2];
     return middle > 0 ? middle : 0;
 }
 
@@ -168,10 +164,9 @@ static whit_result fill_eye(const whit_log *log, const struct scene *scene, stru
         qsort(s->all, s->count, sizeof *s->all, by_exit);
     for (uint32_t i = 0; i < s->count; ++i) {
         for (int32_t n = times_inside(&s->all[i]); n > 0; --n) {
-            if (!add_medium(scene, s->all[i].material, list, &count)) {
-                log_error(log, "the camera is in more than %u media at once", MEDIA_MAX);
-                return WHIT_ERROR_STATUS;
-            }
+            if (!add_medium(scene, s->all[i].material, list, &count))
+                return log_failure(log, WHIT_ERROR_STATUS,
+                                   "the camera is in more than %u media at once", MEDIA_MAX);
         }
     }
     uint32_t *words[] = {&frame->eye_media0, &frame->eye_media1, &frame->eye_media2,
@@ -230,11 +225,9 @@ whit_result media_frame(const whit_log *log, const struct accel *accel,
     fill_sphere(pose, frame);
     if (!any_medium(scene))
         return WHIT_OK;
-    if (scene->material_count > MATERIALS_MAX) {
-        log_error(log, "%s: %u materials; with refraction at most %d are told apart", scene->name,
-                  scene->material_count, MATERIALS_MAX);
-        return WHIT_ERROR_USAGE;
-    }
+    if (scene->material_count > MATERIALS_MAX)
+        return log_usage(log, "%s: %u materials; with refraction at most %d are told apart",
+                         scene->name, scene->material_count, MATERIALS_MAX);
     struct surroundings around = {0};
     bool fine = bodies_list(scene, pose, bodies);
     frame->nested =

@@ -29,15 +29,13 @@ uint64_t mipmap_first(uint32_t width, uint32_t height, uint32_t level)
 
 enum mipmap_kind mipmap_kind_of(const struct scene_material *m, enum scene_slot slot)
 {
-    bool light = slot == SCENE_SLOT_DIFFUSE || slot == SCENE_SLOT_EMISSION ||
-                 (slot == SCENE_SLOT_SPECULAR && m->model == WHIT_MODEL_METAL_ROUGH);
     if (slot == SCENE_SLOT_OPACITY && m->alpha == SCENE_ALPHA_MASK)
         return MIPMAP_NONE;
     /* Without an opacity map the alpha of the diffuse texture is the opacity. */
     if (slot == SCENE_SLOT_DIFFUSE && m->alpha != SCENE_ALPHA_OPAQUE &&
         m->textures[SCENE_SLOT_OPACITY].texture == SCENE_NONE)
         return MIPMAP_COVER;
-    return light ? MIPMAP_SRGB : MIPMAP_LINEAR;
+    return scene_slot_is_srgb(slot, m->model) ? MIPMAP_SRGB : MIPMAP_LINEAR;
 }
 
 /* ---- Averages ---- */

@@ -45,19 +45,15 @@ static whit_result check_rows(const whit_log *log, const whit_renderer_params *p
     uint32_t first = params->first_row, count = params->row_count;
     bool inside = first < params->height && count <= params->height - first;
     bool whole_blocks = first % 8 == 0 && (count % 8 == 0 || first + count == params->height);
-    if (!inside || !whole_blocks || (first && !count)) {
-        log_error(log, "%u rows from %u on of %u: must begin and end at multiples of 8 or the last",
-                  count, first, params->height);
-        return WHIT_ERROR_USAGE;
-    }
-    if (count && params->sampling.kind == WHIT_SAMPLING_ADAPTIVE) {
-        log_error(log, "adaptive samples of some rows: only whole pictures tell who differs");
-        return WHIT_ERROR_USAGE;
-    }
-    if (count && params->count) {
-        log_error(log, "what rays cost is counted of whole pictures");
-        return WHIT_ERROR_USAGE;
-    }
+    if (!inside || !whole_blocks || (first && !count))
+        return log_usage(
+            log, "%u rows from %u on of %u: must begin and end at multiples of 8 or the last",
+            count, first, params->height);
+    if (count && params->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
+        return log_usage(log,
+                         "adaptive samples of some rows: only whole pictures tell who differs");
+    if (count && params->count)
+        return log_usage(log, "what rays cost is counted of whole pictures");
     return WHIT_OK;
 }
 
@@ -73,79 +69,52 @@ whit_result params_check(const whit_log *log, whit_renderer_params *params)
     if (params->sampling.count_max == 0)
         params->sampling.count_max = SAMPLING_ADAPTIVE_MAX;
     if (params->width == 0 || params->height == 0 || params->width > 65535 ||
-        params->height > 65535) {
-        log_error(log, "size %ux%u: both sides must be 1..65535", params->width, params->height);
-        return WHIT_ERROR_USAGE;
-    }
-    if (!isfinite(params->time_s) || !(params->bailout >= 0.0) || !isfinite(params->bailout)) {
-        log_error(log,
-                  "a time of %g s and a bail-out of %g: must be finite, and the latter not "
-                  "below 0",
-                  params->time_s, params->bailout);
-        return WHIT_ERROR_USAGE;
-    }
-    if (!isfinite(params->exposure_ev) || !(params->time_limit_s >= 0.0)) {
-        log_error(log,
-                  "an exposure of %g and a time limit of %g s: the former must be finite, the "
-                  "latter not below 0",
-                  params->exposure_ev, params->time_limit_s);
-        return WHIT_ERROR_USAGE;
-    }
-    if (!is_known(params)) {
-        log_error(log, "parameters of a picture: a value of an enumeration that there is none of");
-        return WHIT_ERROR_USAGE;
-    }
+        params->height > 65535)
+        return log_usage(log, "size %ux%u: both sides must be 1..65535", params->width,
+                         params->height);
+    if (!isfinite(params->time_s) || !(params->bailout >= 0.0) || !isfinite(params->bailout))
+        return log_usage(
+            log, "a time of %g s and a bail-out of %g: must be finite, and the latter not below 0",
+            params->time_s, params->bailout);
+    if (!isfinite(params->exposure_ev) || !(params->time_limit_s >= 0.0))
+        return log_usage(log,
+                         "an exposure of %g and a time limit of %g s: the former must be finite, "
+                         "the latter not below 0",
+                         params->exposure_ev, params->time_limit_s);
+    if (!is_known(params))
+        return log_usage(
+            log, "parameters of a picture: a value of an enumeration that there is none of");
     uint32_t n = params->sampling.count, first = params->sampling.first;
-    if (n > WHIT_SAMPLES_MAX) {
-        log_error(log, "%u samples a pixel: must be 1..%d", n, WHIT_SAMPLES_MAX);
-        return WHIT_ERROR_USAGE;
-    }
-    if (first % n != 0 || first > WHIT_SAMPLES_MAX - n) {
-        log_error(log, "samples of a pixel from %u on: must be a multiple of %u below %d", first, n,
-                  WHIT_SAMPLES_MAX);
-        return WHIT_ERROR_USAGE;
-    }
+    if (n > WHIT_SAMPLES_MAX)
+        return log_usage(log, "%u samples a pixel: must be 1..%d", n, WHIT_SAMPLES_MAX);
+    if (first % n != 0 || first > WHIT_SAMPLES_MAX - n)
+        return log_usage(log, "samples of a pixel from %u on: must be a multiple of %u below %d",
+                         first, n, WHIT_SAMPLES_MAX);
     n = params->light_samples;
-    if (n != 0 && (!is_power_of_4(n) || n > LIGHT_SAMPLES_MAX)) {
-        log_error(log, "%u samples of an area light: must be 1, 4, 16 or 64", n);
-        return WHIT_ERROR_USAGE;
-    }
-    if (params->segments > 2) {
-        log_error(log, "%u segments of lists: must be 1 or 2", params->segments);
-        return WHIT_ERROR_USAGE;
-    }
-    if (params->tile_size && (params->tile_size < TILE_MIN || params->tile_size > TILE_MAX)) {
-        log_error(log, "tile size %u: must be %d..%d", params->tile_size, TILE_MIN, TILE_MAX);
-        return WHIT_ERROR_USAGE;
-    }
+    if (n != 0 && (!is_power_of_4(n) || n > LIGHT_SAMPLES_MAX))
+        return log_usage(log, "%u samples of an area light: must be 1, 4, 16 or 64", n);
+    if (params->segments > 2)
+        return log_usage(log, "%u segments of lists: must be 1 or 2", params->segments);
+    if (params->tile_size && (params->tile_size < TILE_MIN || params->tile_size > TILE_MAX))
+        return log_usage(log, "tile size %u: must be %d..%d", params->tile_size, TILE_MIN,
+                         TILE_MAX);
     if (adaptive &&
         (!is_power_of_4(params->sampling.count) || !is_power_of_4(params->sampling.count_max) ||
          params->sampling.count >= params->sampling.count_max ||
-         params->sampling.count_max > SAMPLING_ADAPTIVE_MAX)) {
-        log_error(log, "adaptive samples from %u to %u: must be powers of 4 from 1 up to %d",
-                  params->sampling.count, params->sampling.count_max, SAMPLING_ADAPTIVE_MAX);
-        return WHIT_ERROR_USAGE;
-    }
-    if (adaptive && !(params->sampling.contrast > 0.0 && params->sampling.contrast <= 1.0)) {
-        log_error(log, "adaptive contrast %g: must be above 0, up to 1", params->sampling.contrast);
-        return WHIT_ERROR_USAGE;
-    }
-    if (adaptive && params->sampling.first) {
-        log_error(log, "adaptive samples begin with the first one");
-        return WHIT_ERROR_USAGE;
-    }
-    if (adaptive && params->count) {
-        log_error(log, "what rays cost is not counted with adaptive samples");
-        return WHIT_ERROR_USAGE;
-    }
+         params->sampling.count_max > SAMPLING_ADAPTIVE_MAX))
+        return log_usage(log, "adaptive samples from %u to %u: must be powers of 4 from 1 up to %d",
+                         params->sampling.count, params->sampling.count_max, SAMPLING_ADAPTIVE_MAX);
+    if (adaptive && !(params->sampling.contrast > 0.0 && params->sampling.contrast <= 1.0))
+        return log_usage(log, "adaptive contrast %g: must be above 0, up to 1",
+                         params->sampling.contrast);
+    if (adaptive && params->sampling.first)
+        return log_usage(log, "adaptive samples begin with the first one");
+    if (adaptive && params->count)
+        return log_usage(log, "what rays cost is not counted with adaptive samples");
     n = params->step_spacing;
-    if (n != 0 && n != 2 && n != 4 && n != 8) {
-        log_error(log, "steps of every %u-th pixel: must be 2, 4 or 8", n);
-        return WHIT_ERROR_USAGE;
-    }
-    if (params->depth > DEPTH_LARGEST) {
-        log_error(log, "depth %u: must be 0..%d", params->depth, DEPTH_LARGEST);
-        return WHIT_ERROR_USAGE;
-    }
+    if (n != 0 && n != 2 && n != 4 && n != 8)
+        return log_usage(log, "steps of every %u-th pixel: must be 2, 4 or 8", n);
+    if (params->depth > DEPTH_LARGEST)
+        return log_usage(log, "depth %u: must be 0..%d", params->depth, DEPTH_LARGEST);
     return check_rows(log, params);
 }

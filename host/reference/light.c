@@ -7,11 +7,6 @@
 
 #define LIGHT_MAX 1e24
 
-static struct dvec3 three(const double v[3])
-{
-    return d3(v[0], v[1], v[2]);
-}
-
 static struct dvec3 emitter_point(const struct tracer *tracer, const struct scene_light *light,
                                   uint32_t index)
 {
@@ -23,13 +18,13 @@ static struct dvec3 emitter_point(const struct tracer *tracer, const struct scen
         u = root * (1.0 - v);
         v = root * v;
     }
-    return dvec3_along(dvec3_along(three(light->position), three(light->edge_u), u),
-                       three(light->edge_v), v);
+    return dvec3_along(dvec3_along(dvec3_load(light->position), dvec3_load(light->edge_u), u),
+                       dvec3_load(light->edge_v), v);
 }
 
 double light_area_share(const struct reference *reference, const struct scene_light *light)
 {
-    double area = d3_length(dvec3_cross(three(light->edge_u), three(light->edge_v)));
+    double area = d3_length(dvec3_cross(dvec3_load(light->edge_u), dvec3_load(light->edge_v)));
     if (light->kind == WHIT_LIGHT_TRIANGLE)
         area *= 0.5;
     return area / (PI * reference->light_samples);
@@ -51,11 +46,6 @@ static struct dvec3 at_most(struct dvec3 light)
     return d3(fmin(light.x, LIGHT_MAX), fmin(light.y, LIGHT_MAX), fmin(light.z, LIGHT_MAX));
 }
 
-static double largest_size(struct dvec3 a)
-{
-    return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
-}
-
 /* How far before the light a shadow ray ends, so that a surface in which the light lies casts no
    shadow: where an emitter's plane and a surface's differ by roundings of their coordinates, this
    is what such a surface is off along the ray. */
@@ -66,7 +56,7 @@ static double end_before(const struct reference *reference, const struct scene_l
     double end = (double)reference->light_ends[light - reference->pose.lights];
     if (!scene_light_is_flat(light) && light->kind != WHIT_LIGHT_AREA_SAMPLE)
         return distance * end;
-    double off = fmax(end, (largest_size(p) + largest_size(way)) * LIGHT_END_ROUNDING);
+    double off = fmax(end, (d3_size(p) + d3_size(way)) * LIGHT_END_ROUNDING);
     return fmin(distance * LIGHT_END_SHARE_MAX, off / fabs(cos_away));
 }
 
@@ -75,13 +65,13 @@ bool light_at(const struct tracer *tracer, const struct scene_light *light, uint
 {
     bool flat = scene_light_is_flat(light);
     *sample = (struct light_sample_info){.arriving = d3_load(light->color)};
-    struct dvec3 direction = d3_unit_or(three(light->direction), d3_all(0.0));
+    struct dvec3 direction = d3_unit_or(dvec3_load(light->direction), d3_all(0.0));
     if (light->kind == WHIT_LIGHT_DIRECTIONAL) {
         sample->to_light = d3_scale(direction, -1.0);
         sample->distance = INFINITY;
         return true;
     }
-    struct dvec3 from = flat ? emitter_point(tracer, light, index) : three(light->position);
+    struct dvec3 from = flat ? emitter_point(tracer, light, index) : dvec3_load(light->position);
     struct dvec3 way = dvec3_sub(from, p);
     sample->distance = d3_length(way);
     if (!(sample->distance > 0.0))
@@ -136,14 +126,16 @@ static int clip_to_horizon(struct dvec3 n, const struct dvec3 *corners, int coun
 
 double light_form_factor(const struct scene_light *light, struct dvec3 p, struct dvec3 n)
 {
-    struct dvec3 u = three(light->edge_u), v = three(light->edge_v), clipped[8];
-    struct dvec3 c0 = dvec3_sub(three(light->position), p), direction = three(light->direction);
+    struct dvec3 u = dvec3_load(light->edge_u), v = dvec3_load(light->edge_v), clipped[8];
+    struct dvec3 c0 = dvec3_sub(dvec3_load(light->position), p),
+                 direction = dvec3_load(light->direction);
     bool triangle = light->kind == WHIT_LIGHT_TRIANGLE;
     const struct dvec3 corners[4] = {
         c0, d3_add(c0, u), triangle ? d3_add(c0, v) : d3_add(d3_add(c0, u), v), d3_add(c0, v)};
     double height = -dvec3_dot(c0, direction), sum = 0.0;
     /* The point is in the emitter's plane, within the rounding of corners to floats. */
-    if (fabs(height) <= (double)FLT_EPSILON * (d3_length(p) + d3_length(three(light->position))))
+    if (fabs(height) <=
+        (double)FLT_EPSILON * (d3_length(p) + d3_length(dvec3_load(light->position))))
         return 0.0;
     int count = clip_to_horizon(n, corners, triangle ? 3 : 4, clipped);
     for (int i = 0; i < count; ++i)

@@ -76,9 +76,8 @@ struct candidate meet_sphere(const struct line *line, const struct gpu_triangle 
                              bool at_exit, bool self)
 {
     struct candidate m = {.owned = true, .front = !at_exit};
-    struct dvec3 d = d3(line->dir[0], line->dir[1], line->dir[2]);
-    struct dvec3 c =
-        dvec3_sub(d3_load(sphere->v0), d3(line->origin[0], line->origin[1], line->origin[2]));
+    struct dvec3 d = dvec3_load(line->dir);
+    struct dvec3 c = dvec3_sub(d3_load(sphere->v0), dvec3_load(line->origin));
     double radius = (double)sphere->v1[0], dd = dvec3_dot(d, d), middle = dvec3_dot(c, d) / dd;
     struct dvec3 off = dvec3_along(c, d, -middle);
     double room = radius * radius - dvec3_dot(off, off);

@@ -18,9 +18,9 @@ static double schlick_weight(double cos_in)
     return same_pow(clamp_unit(1.0 - cos_in), SCHLICK_POWER);
 }
 
-/* By Fresnel's sine and tangent laws for angles; near normal incidence, where these divide by 0, by
-   the limit. */
-double optics_fresnel(double cos_in, double eta)
+/* Share of unpolarised light that a smooth surface reflects; 1: total reflection. By Fresnel's sine
+   and tangent laws for angles; near normal incidence, where these divide by 0, by the limit. */
+static double fresnel(double cos_in, double eta)
 {
     double cos2 = refracted_cos2(cos_in, eta);
     if (eta == 1.0)
@@ -148,7 +148,7 @@ static void take_glass(const struct reference *reference, const struct scene_mat
     bool total = !o->thin && !(refracted_cos2(cos_view, o->eta) > 0.0);
     double eta = o->thin ? 1.0 / (double)m->ior : o->eta;
     double share = reference->params.picture.schlick ? schlick_reflectance(cos_view, eta)
-                                                     : optics_fresnel(cos_view, eta);
+                                                     : fresnel(cos_view, eta);
     if (o->thin) /* both faces of a sheet, with all reflections between them */
         share = 2.0 * share / (1.0 + share);
     o->refracted = d3_scale(f->transmission, total ? 0.0 : m->fresnel ? 1.0 - share : 1.0);

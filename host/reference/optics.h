@@ -18,8 +18,6 @@ struct optics optics_at(const struct reference *reference, struct surface *s, st
                         double eta);
 /* Turns it into the optics of a shadow catcher: all light passes straight through. */
 void optics_make_catcher(struct optics *o);
-/* Share of unpolarised light that a smooth surface reflects; 1: total reflection. */
-double optics_fresnel(double cos_in, double eta);
 /* Gives the refracted direction; false: total reflection. */
 bool optics_refract(struct dvec3 dir, struct dvec3 n, double eta, struct dvec3 *out);
 struct dvec3 optics_reflect(struct dvec3 dir, struct dvec3 n);

@@ -17,17 +17,13 @@ static whit_result check_params(const whit_log *log, const struct scene *scene,
                                 whit_renderer_params *params)
 {
     if (params->sampling.kind == WHIT_SAMPLING_ADAPTIVE || params->effects_removed ||
-        params->shader) {
-        log_error(log,
-                  "a reference picture has all effects, as many samples in every pixel, and no "
-                  "functions of users");
-        return WHIT_ERROR_USAGE;
-    }
-    if (scene->pictures_dropped) {
-        log_error(log, "%s: its textures were dropped, no reference can be made from it",
-                  scene->name);
-        return WHIT_ERROR_USAGE;
-    }
+        params->shader)
+        return log_usage(
+            log, "a reference picture has all effects, as many samples in every pixel, and no "
+                 "functions of users");
+    if (scene->pictures_dropped)
+        return log_usage(log, "%s: its textures were dropped, no reference can be made from it",
+                         scene->name);
     return params_check(log, params);
 }
 
@@ -212,14 +208,11 @@ static void add_rays(const struct tracer *from, whit_stats *to)
 
 static whit_result tracer_result(const struct reference *r, const struct tracer *tracer)
 {
-    if (tracer->lacks_memory) {
-        log_error(&r->log, "out of memory for the rays of a pixel");
-        return WHIT_ERROR_MEMORY;
-    }
-    if (tracer->too_many_media) {
-        log_error(&r->log, "a ray is in more than %u media at once", MEDIA_MAX);
-        return WHIT_ERROR_STATUS;
-    }
+    if (tracer->lacks_memory)
+        return log_failure(&r->log, WHIT_ERROR_MEMORY, "out of memory for the rays of a pixel");
+    if (tracer->too_many_media)
+        return log_failure(&r->log, WHIT_ERROR_STATUS, "a ray is in more than %u media at once",
+                           MEDIA_MAX);
     return WHIT_OK;
 }
 
@@ -290,11 +283,10 @@ whit_result reference_ray_tree(const struct reference *r, uint32_t x, uint32_t y
     struct hit first;
     *rays = NULL;
     *count = 0;
-    if (x >= params->width || y >= params->height || sample >= params->sampling.count) {
-        log_error(&r->log, "pixel %u,%u, sample %u: the picture has %ux%u pixels of %u samples", x,
-                  y, sample, params->width, params->height, params->sampling.count);
-        return WHIT_ERROR_USAGE;
-    }
+    if (x >= params->width || y >= params->height || sample >= params->sampling.count)
+        return log_usage(&r->log,
+                         "pixel %u,%u, sample %u: the picture has %ux%u pixels of %u samples", x, y,
+                         sample, params->width, params->height, params->sampling.count);
     whit_result result = accel_pose_again(r->accel, &r->pose);
     if (result != WHIT_OK)
         return result;

@@ -95,12 +95,6 @@ static void place_uv(const struct surface *s, const struct scene_texture_use *us
                 (double)scene_texture_offset(use, i);
 }
 
-static bool is_srgb(const struct scene_material *m, enum scene_slot slot)
-{
-    return slot == SCENE_SLOT_DIFFUSE || slot == SCENE_SLOT_EMISSION ||
-           (slot == SCENE_SLOT_SPECULAR && m->model == WHIT_MODEL_METAL_ROUGH);
-}
-
 /* The size of the ray's footprint in texels of level 0: mean of the squared lengths of its two
    sides. */
 static double footprint_texels(const struct surface *s, const struct scene_texture_use *use,
@@ -132,7 +126,7 @@ static struct texel sample_at(const struct reference *reference, const struct su
     const struct scene_texture *t = &reference->scene->textures[use->texture];
     enum mipmap_kind kind = mipmap_kind_of(s->material, slot);
     const uint8_t *behind = reference->levels[use->texture][kind];
-    bool srgb = is_srgb(s->material, slot);
+    bool srgb = scene_slot_is_srgb(slot, s->material->model);
     double level = behind ? fmin(mipmap_level(reference->level_pieces, footprint_texels(s, use, t)),
                                  mipmap_levels(t->width, t->height))
                           : 0.0;

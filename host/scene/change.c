@@ -94,6 +94,7 @@ static void compare_fields(struct words *words, const void *a, const void *b,
         put_value(words, b, field);
     }
 }
+
 /* Compares the names of the record that a reference points to on either side; "": none. */
 static void compare_names(struct words *words, const char *what, const char *a, const char *b)
 {
@@ -134,18 +135,6 @@ static void compare_materials(struct words *words, const struct scene_side *befo
                       scene_parts_name(after->parts, WHIT_PART_TEXTURE, b->textures[i].texture));
         compare_fields(words, &a->textures[i], &b->textures[i], scene_texture_use_fields);
     }
-}
-
-static void compare_lights(struct words *words, const struct scene_light *a,
-                           const struct scene_light *b)
-{
-    compare_fields(words, a, b, scene_light_fields);
-}
-
-static void compare_cameras(struct words *words, const struct scene_camera *a,
-                            const struct scene_camera *b)
-{
-    compare_fields(words, a, b, scene_camera_fields);
 }
 
 /* ---- Arrays ---- */
@@ -331,17 +320,11 @@ static void compare_lists(struct words *words, const struct scene_parts *has,
     }
 }
 
-static struct affine node_matrix(const struct scene_node *node)
-{
-    return node->has_matrix ? node->matrix
-                            : affine_from_trs(node->translation, node->rotation, node->scale);
-}
-
 /* Describes how a node's local transform differs. */
 static void compare_node(struct words *words, const char *name, const struct scene_node *a,
                          const struct scene_node *b)
 {
-    struct affine x = node_matrix(a), y = node_matrix(b);
+    struct affine x = scene_node_matrix(a), y = scene_node_matrix(b);
     double from[3] = {x.m[3], x.m[7], x.m[11]}, to[3] = {y.m[3], y.m[7], y.m[11]};
     bool turned = false;
     for (int i = 0; i < 12; ++i)
@@ -408,11 +391,11 @@ static void compare(struct words *words, const struct scene_side *before,
         compare_textures(words, &a->textures[i], &b->textures[k]);
         break;
     case WHIT_PART_LIGHT:
-        compare_lights(words, &a->lights[i], &b->lights[k]);
+        compare_fields(words, &a->lights[i], &b->lights[k], scene_light_fields);
         compare_nodes(words, before, a->lights[i].node, after, b->lights[k].node);
         break;
     case WHIT_PART_CAMERA:
-        compare_cameras(words, &a->cameras[i], &b->cameras[k]);
+        compare_fields(words, &a->cameras[i], &b->cameras[k], scene_camera_fields);
         compare_nodes(words, before, a->cameras[i].node, after, b->cameras[k].node);
         break;
     case WHIT_PART_ANIMATION:

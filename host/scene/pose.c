@@ -5,6 +5,7 @@
 #include "base/array.h"
 #include "base/same.h"
 #include "base/text.h"
+#include "base/vec.h"
 #include "scene/pose.h"
 
 /* An animated scale of zero (things that pop up or vanish) is raised to this, so that the matrix
@@ -13,6 +14,7 @@
 /* The scale of an instance that nested scales of about zero have made too small for floats. */
 #define HIDDEN_SCALE            1e-12
 
+/* Numbers of a value, between tangents or not. */
 static uint32_t width_of(const struct scene_channel *channel)
 {
     return channel->path == SCENE_PATH_ROTATION ? 4 : 3;
@@ -163,29 +165,12 @@ static struct affine *pose_nodes(const struct scene *scene, double time_s)
     for (uint32_t i = 0; i < scene->channel_count; ++i)
         apply_channel(&scene->channels[i], time_s, &moved[scene->channels[i].node]);
     for (uint32_t i = 0; i < scene->node_count; ++i) {
-        const struct scene_node *node = &moved[i];
-        struct affine local = node->has_matrix
-                                  ? node->matrix
-                                  : affine_from_trs(node->translation, node->rotation, node->scale);
-        world[i] =
-            node->parent == SCENE_NONE ? local : affine_multiply(&world[node->parent], &local);
+        world[i] = scene_node_matrix(&moved[i]);
+        if (moved[i].parent != SCENE_NONE)
+            world[i] = affine_multiply(&world[moved[i].parent], &world[i]);
     }
     free(moved);
     return world;
-}
-
-static void unit(double v[3], const double otherwise[3])
-{
-    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-    if (!(largest > 0.0) || !isfinite(largest)) {
-        memcpy(v, otherwise, 3 * sizeof v[0]);
-        return;
-    }
-    for (int i = 0; i < 3; ++i)
-        v[i] /= largest;
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; ++i)
-        v[i] /= length;
 }
 
 /* Transforms a normal by the inverse transpose, to any length. The determinant's sign is left out:
@@ -203,20 +188,15 @@ static void move_normal(const struct affine *world, const double in[3], double o
     memcpy(out, moved, sizeof moved);
 }
 
-static double volume_of(const double a[3], const double b[3], const double c[3])
-{
-    return (a[1] * b[2] - a[2] * b[1]) * c[0] + (a[2] * b[0] - a[0] * b[2]) * c[1] +
-           (a[0] * b[1] - a[1] * b[0]) * c[2];
-}
-
 /* Transforms a flat emitter's edges. They are swapped in a mirrored node, so that edge_u x edge_v
    still points along its direction. */
 static void move_edges(const struct affine *world, struct scene_light *light)
 {
-    double u[3], v[3];
+    double u[3], v[3], normal[3];
     affine_vector(world, light->edge_u, u);
     affine_vector(world, light->edge_v, v);
-    bool swapped = volume_of(u, v, light->direction) < 0.0;
+    double3_cross(u, v, normal);
+    bool swapped = double3_dot(normal, light->direction) < 0.0;
     memcpy(light->edge_u, swapped ? v : u, sizeof u);
     memcpy(light->edge_v, swapped ? u : v, sizeof v);
 }
@@ -235,7 +215,8 @@ static struct scene_light pose_light(const struct scene_light *light, const stru
             move_edges(world, &out);
         out.node = SCENE_NONE;
     }
-    unit(out.direction, (const double[3]){0, -1, 0});
+    if (!double3_normalize(out.direction))
+        memcpy(out.direction, (const double[3]){0, -1, 0}, sizeof out.direction);
     return out;
 }
 
@@ -273,10 +254,7 @@ static void grow_bounds(double lo[3], double hi[3], const struct affine *matrix,
         for (int i = 0; i < 3; ++i)
             p[i] = (double)(corner >> i & 1 ? mesh->hi[i] : mesh->lo[i]);
         affine_point(matrix, p, p);
-        for (int i = 0; i < 3; ++i) {
-            lo[i] = fmin(lo[i], p[i]);
-            hi[i] = fmax(hi[i], p[i]);
-        }
+        double3_grow_box(lo, hi, p);
     }
 }
 
@@ -302,9 +280,9 @@ static void grow_objects(const struct scene *scene, const struct scene_pose *pos
                          double max, double lo[3], double hi[3])
 {
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
-        double own_lo[3] = {INFINITY, INFINITY, INFINITY}, thin;
-        double own_hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+        double own_lo[3], own_hi[3], thin;
         const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+        double3_no_box(own_lo, own_hi);
         grow_bounds(own_lo, own_hi, &pose->instances[i], mesh);
         double longest = box_sides(own_lo, own_hi, &thin);
         if (flat == (thin < FLAT * longest) && longest <= max)
@@ -316,10 +294,7 @@ void scene_pose_objects(const struct scene *scene, const struct scene_pose *pose
                         double hi[3])
 {
     double thin;
-    for (int i = 0; i < 3; ++i) {
-        lo[i] = INFINITY;
-        hi[i] = -INFINITY;
-    }
+    double3_no_box(lo, hi);
     grow_objects(scene, pose, false, INFINITY, lo, hi);
     if (lo[0] <= hi[0]) {
         grow_objects(scene, pose, true, WIDER * box_sides(lo, hi, &thin), lo, hi);
@@ -368,12 +343,10 @@ static whit_result pose_instances(const struct scene *scene, const struct affine
         struct affine matrix = instance_matrix(instance, nodes);
         if (!scene_can_place(&matrix))
             hide_point(&matrix);
-        if (!scene_can_place(&matrix)) {
-            log_error(&scene->log,
-                      "%s: instance %u `%s` is flat, too large or too far away at %g s",
-                      scene->name, i, text_token(instance->name).text, pose->time_s);
-            return WHIT_ERROR_INPUT;
-        }
+        if (!scene_can_place(&matrix))
+            return log_failure(&scene->log, WHIT_ERROR_INPUT,
+                               "%s: instance %u `%s` is flat, too large or too far away at %g s",
+                               scene->name, i, text_token(instance->name).text, pose->time_s);
         pose->instances[i] = matrix;
         grow_bounds(pose->lo, pose->hi, &matrix, &scene->meshes[instance->mesh]);
     }
@@ -390,10 +363,8 @@ whit_result scene_pose_init(const struct scene *scene, double time_s, struct sce
         .lo = {INFINITY, INFINITY, INFINITY},
         .hi = {-INFINITY, -INFINITY, -INFINITY},
     };
-    if (!isfinite(time_s)) {
-        log_error(&scene->log, "a time of %g s: it must be finite", time_s);
-        return WHIT_ERROR_USAGE;
-    }
+    if (!isfinite(time_s))
+        return log_usage(&scene->log, "a time of %g s: it must be finite", time_s);
     whit_result result = WHIT_ERROR_MEMORY;
     struct affine *nodes = pose_nodes(scene, time_s);
     pose->instances = array_alloc(scene->instance_count, sizeof *pose->instances);

@@ -148,6 +148,13 @@ struct scene_node {
     double translation[3], rotation[4], scale[3]; /* quaternion x, y, z, w */
 };
 
+/* Its matrix to the space of its parent. */
+static inline struct affine scene_node_matrix(const struct scene_node *node)
+{
+    return node->has_matrix ? node->matrix
+                            : affine_from_trs(node->translation, node->rotation, node->scale);
+}
+
 enum scene_path { SCENE_PATH_TRANSLATION, SCENE_PATH_ROTATION, SCENE_PATH_SCALE };
 /* LINEAR is slerp for rotations. CUBIC is glTF's Hermite spline, with tangents per second. */
 enum scene_interpolation { SCENE_STEP, SCENE_LINEAR, SCENE_CUBIC };

@@ -433,4 +433,4 @@ change(host/reference/reference.c draw_pixel [[->sample = ([a-z]+->sampling.firs
   [[->sample = 0 * (\1);]])
 
 mutation(reference_fresnel_of_two_percent reference_scenes RED default_scenes_agree)
-change(host/reference/optics.c optics_fresnel [[return 0\.5]] [[return 0.51]])
+change(host/reference/optics.c fresnel [[return 0\.5]] [[return 0.51]])
