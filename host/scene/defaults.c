@@ -71,33 +71,34 @@ static whit_result add_camera(struct scene *scene, const struct scene_pose *pose
     return WHIT_OK;
 }
 
+static whit_result add_lamp(struct scene *scene, const char *name, const double position[3],
+                            float r, float g, float b)
+{
+    struct scene_light light = {
+        .name = scene_text(scene, name),
+        .kind = WHIT_LIGHT_POINT,
+        .node = SCENE_NONE,
+        .direction = {0, -1, 0},
+        .made_by_whit = true,
+    };
+    set_color(light.color, r, g, b);
+    memcpy(light.position, position, sizeof light.position);
+    return scene_add_light(scene, light) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
+}
+
 /* Lights a room, whose walls keep out light from outside: one lamp at the eye, and a stronger one
    ahead, to the left and above, so that its shadows are seen. `why`: beginning of the note. */
 static whit_result add_room_lights(struct scene *scene, const struct viewpoint *viewpoint,
                                    const char *why)
 {
-    const struct {
-        const char *name;
-        const double *position;
-        float level;
-    } lamps[] = {{"default lamp ahead", viewpoint->lamp, 0.6f},
-                 {"default lamp", viewpoint->eye, 0.3f}};
-    for (size_t k = 0; k < sizeof lamps / sizeof *lamps; ++k) {
-        struct scene_light light = {
-            .name = scene_text(scene, lamps[k].name),
-            .kind = WHIT_LIGHT_POINT,
-            .node = SCENE_NONE,
-            .direction = {0, -1, 0},
-            .made_by_whit = true,
-        };
-        set_color(light.color, lamps[k].level, 0.98f * lamps[k].level, 0.94f * lamps[k].level);
-        memcpy(light.position, lamps[k].position, sizeof light.position);
-        if (scene_add_light(scene, light) == SCENE_NONE)
-            return WHIT_ERROR_MEMORY;
-    }
-    scene_note(scene, SCENE_NOTE_INFO,
-               "%s: two lamps were added, at the camera and ahead of it to the left", why);
-    return WHIT_OK;
+    whit_result result =
+        add_lamp(scene, "default lamp ahead", viewpoint->lamp, 0.6f, 0.98f * 0.6f, 0.94f * 0.6f);
+    if (result == WHIT_OK)
+        result = add_lamp(scene, "default lamp", viewpoint->eye, 0.3f, 0.98f * 0.3f, 0.94f * 0.3f);
+    if (result == WHIT_OK)
+        scene_note(scene, SCENE_NOTE_INFO,
+                   "%s: two lamps were added, at the camera and ahead of it to the left", why);
+    return result;
 }
 
 /* Adds a directional light from over the camera's left shoulder. VIEWPOINT_STRAIGHT may look into
@@ -126,26 +127,20 @@ static whit_result add_key_light(struct scene *scene, const struct scene_camera 
     return scene_add_light(scene, light) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
 }
 
-static void add_sky(struct scene *scene)
+static void add_environment(struct scene *scene, bool sky)
 {
-    struct scene_environment *sky = &scene->environment;
-    sky->kind = WHIT_ENVIRONMENT_GRADIENT;
-    set_color(sky->zenith, 0.22f, 0.40f, 0.72f);
-    set_color(sky->horizon, 0.72f, 0.77f, 0.82f);
-    set_color(sky->ground, 0.52f, 0.52f, 0.52f);
-    set_color(sky->scale, 1.0f, 1.0f, 1.0f);
-    sky->made_by_whit = true;
-}
-
-static void add_darkness(struct scene *scene)
-{
-    struct scene_environment *sky = &scene->environment;
-    sky->kind = WHIT_ENVIRONMENT_GRADIENT;
-    set_color(sky->zenith, 0.0f, 0.0f, 0.0f);
-    set_color(sky->horizon, 0.0f, 0.0f, 0.0f);
-    set_color(sky->ground, 0.0f, 0.0f, 0.0f);
-    set_color(sky->scale, 1.0f, 1.0f, 1.0f);
-    sky->made_by_whit = true;
+    static const struct scene_environment blue = {.kind = WHIT_ENVIRONMENT_GRADIENT,
+                                                  .zenith = {0.22f, 0.40f, 0.72f},
+                                                  .horizon = {0.72f, 0.77f, 0.82f},
+                                                  .ground = {0.52f, 0.52f, 0.52f},
+                                                  .scale = {1.0f, 1.0f, 1.0f},
+                                                  .made_by_whit = true},
+                                          black = {.kind = WHIT_ENVIRONMENT_GRADIENT,
+                                                   .scale = {1.0f, 1.0f, 1.0f},
+                                                   .made_by_whit = true};
+    scene->environment = sky ? blue : black;
+    scene_note(scene, SCENE_NOTE_INFO, "no environment in the file: %s",
+               sky ? "a sky was added" : "the background is black");
 }
 
 static whit_result expose_stated_lights(struct scene *scene)
@@ -199,19 +194,10 @@ static whit_result add_own_light(struct scene *scene, const struct scene_pose *p
 static whit_result add_lamp_at_eye(struct scene *scene, const struct scene_pose *pose, double share)
 {
     const struct scene_camera *camera = pose->camera_count ? pose->cameras : scene->cameras;
-    struct scene_light light = {
-        .name = scene_text(scene, "default lamp"),
-        .kind = WHIT_LIGHT_POINT,
-        .node = SCENE_NONE,
-        .direction = {0, -1, 0},
-        .color = {0.6f, 0.59f, 0.56f},
-        .made_by_whit = true,
-    };
-    memcpy(light.position, camera->eye, sizeof light.position);
     scene_note(scene, SCENE_NOTE_INFO,
                "light from outside reaches %.0f %% of what is seen: a lamp was added at the camera",
                100.0 * share);
-    return scene_add_light(scene, light) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
+    return add_lamp(scene, "default lamp", camera->eye, 0.6f, 0.59f, 0.56f);
 }
 
 /* Adds whit's own light where a model's lights leave most of what is seen dark. */
@@ -303,14 +289,8 @@ whit_result freeze_add_defaults(struct scene *scene)
         result = add_lights(scene, &pose, &viewpoint, &lights);
     if (result == WHIT_OK && !scene->has_ambient)
         add_ambient(scene, &lights);
-    if (result == WHIT_OK && !scene->has_environment) {
-        if (lights.key)
-            add_sky(scene);
-        else
-            add_darkness(scene);
-        scene_note(scene, SCENE_NOTE_INFO, "no environment in the file: %s",
-                   lights.key ? "a sky was added" : "the background is black");
-    }
+    if (result == WHIT_OK && !scene->has_environment)
+        add_environment(scene, lights.key);
     scene_pose_finish(&pose);
     return result;
 }

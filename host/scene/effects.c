@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/color.h"
+#include "base/path.h"
 #include "base/text.h"
 #include "scene/effects.h"
 
@@ -43,16 +45,8 @@ const char *scene_effect_name(enum scene_effect effect)
     return (unsigned)effect < SCENE_EFFECT_COUNT ? names[effect] : "unknown";
 }
 
-static const char *file_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-static void call(struct scene_effects *out, enum scene_effect effect, const char *format, ...)
-    WHIT_PRINTF(3, 4);
-
 /* Marks an effect as called for; only the first reason is kept. */
+WHIT_PRINTF(3, 4)
 static void call(struct scene_effects *out, enum scene_effect effect, const char *format, ...)
 {
     if (out->called[effect])
@@ -68,9 +62,9 @@ static void place_of(const struct scene_origin *origin, char *out, size_t out_by
 {
     out[0] = '\0';
     if (origin->file && origin->line)
-        snprintf(out, out_bytes, ", %s:%u", file_name(origin->file), origin->line);
+        snprintf(out, out_bytes, ", %s:%u", path_name(origin->file), origin->line);
     else if (origin->file)
-        snprintf(out, out_bytes, ", %s", file_name(origin->file));
+        snprintf(out, out_bytes, ", %s", path_name(origin->file));
 }
 
 static void call_by_material(struct scene_effects *out, enum scene_effect effect,
@@ -88,7 +82,7 @@ static void call_by_material(struct scene_effects *out, enum scene_effect effect
 
 static bool any(const float rgb[3])
 {
-    return rgb[0] > 0.0f || rgb[1] > 0.0f || rgb[2] > 0.0f;
+    return !color_is_black(rgb);
 }
 
 static bool has(const struct scene_material *material, enum scene_slot slot)
@@ -180,13 +174,12 @@ static void scan_material(const struct scene *scene, struct scene_effects *out,
             continue;
         call_by_material(out, SCENE_EFFECT_TEXTURES, m, slots[slot]);
         out->texture_slots |= 1u << slot;
-        out->sampling |= sampling_of(&m->textures[slot]);
+        out->sampling |=
+            sampling_of(&m->textures[slot]) |
+            (scene_slot_is_srgb((enum scene_slot)slot, m->model) ? SCENE_SAMPLING_SRGB : 0u);
     }
     if (has(m, SCENE_SLOT_DIFFUSE) && m->alpha != SCENE_ALPHA_OPAQUE)
         out->texture_slots |= 1u << SCENE_SLOT_OPACITY;
-    if (has(m, SCENE_SLOT_DIFFUSE) || has(m, SCENE_SLOT_EMISSION) ||
-        (has(m, SCENE_SLOT_SPECULAR) && m->model == WHIT_MODEL_METAL_ROUGH))
-        out->sampling |= SCENE_SAMPLING_SRGB;
     if (m->model != WHIT_MODEL_UNLIT && (has(m, SCENE_SLOT_NORMAL) || has(m, SCENE_SLOT_BUMP)))
         call_by_material(out, SCENE_EFFECT_NORMAL_MAPS, m,
                          has(m, SCENE_SLOT_NORMAL) ? "normal map" : "bump map");
@@ -339,7 +332,7 @@ void scene_effects_scan(const struct scene *scene, bool functions, struct scene_
     const struct scene_environment *sky = &scene->environment;
     if (sky->kind == WHIT_ENVIRONMENT_MAP && sky->rgb)
         call(out, SCENE_EFFECT_ENVIRONMENT_MAP, "map `%s`",
-             text_token(sky->name ? file_name(sky->name) : "").text);
+             text_token(sky->name ? path_name(sky->name) : "").text);
     for (uint32_t i = 0; i < scene->camera_count; ++i)
         scan_camera(out, &scene->cameras[i]);
 }

@@ -2,11 +2,11 @@
    program's camera was set to (a lamp of 1 that should fill a hall, or one of 17 in a box), so
    lights made of them are scaled until what they light best comes out bright, and not burnt out. */
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/color.h"
 #include "base/file.h"
 #include "base/same.h"
+#include "base/sample.h"
 #include "base/vec.h"
 #include "scene/exposure.h"
 #include "scene/lit.h"
@@ -149,12 +149,6 @@ static double total_area(const struct scene *scene, const struct scene_pose *pos
     return total;
 }
 
-static int compare_values(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Whether light or emission comes from a foreign model. Numbers in whit's own scene files (.json)
    are meant as they stand. */
 static bool is_from_model(const struct scene_origin *origin)
@@ -174,6 +168,11 @@ static bool all_from_models(const struct scene *scene, bool emitters)
     return all;
 }
 
+static double at_share(const double *sorted, uint32_t count, double share)
+{
+    return sorted[(uint32_t)(share * (count - 1))];
+}
+
 static whit_result measure(const struct scene *scene, double *bright)
 {
     struct scene_pose pose;
@@ -185,8 +184,8 @@ static whit_result measure(const struct scene *scene, double *bright)
     for (uint32_t i = 0; area > 0.0 && isfinite(area) && i < scene->instance_count; ++i)
         probe_instance(scene, &pose, i, area / PROBES, &before, &list);
     scene_pose_finish(&pose);
-    qsort(list.values, list.count, sizeof *list.values, compare_values);
-    *bright = list.count ? list.values[(uint32_t)(SHARE * (list.count - 1))] : 0.0;
+    sample_sort(list.values, list.count);
+    *bright = list.count ? at_share(list.values, list.count, SHARE) : 0.0;
     return WHIT_OK;
 }
 
@@ -211,11 +210,6 @@ whit_result freeze_expose(struct scene *scene, bool emitters, double *factor)
 
 /* ---- Exposure of a model ---- */
 
-static double at_share(const double *sorted, uint32_t count, double share)
-{
-    return sorted[(uint32_t)(share * (count - 1))];
-}
-
 static double share_from(const double *sorted, uint32_t count, double value)
 {
     uint32_t below = 0;
@@ -230,8 +224,8 @@ static double share_from(const double *sorted, uint32_t count, double value)
    it is 0. */
 static double exposure_of(struct freeze_seen *seen, double *burnt)
 {
-    qsort(seen->shown, seen->count, sizeof *seen->shown, compare_values);
-    qsort(seen->white, seen->count, sizeof *seen->white, compare_values);
+    sample_sort(seen->shown, seen->count);
+    sample_sort(seen->white, seen->count);
     double bright = at_share(seen->shown, seen->count, SHARE), ev = 0.0;
     double middle = at_share(seen->shown, seen->count, 0.5);
     double white = at_share(seen->white, seen->count, SHARE);

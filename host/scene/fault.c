@@ -99,12 +99,11 @@ static bool swap_materials(struct scene *scene, uint64_t *random, double glow)
     uint32_t i = draw(random, scene->material_count);
     uint32_t k = (i + 1 + draw(random, scene->material_count - 1)) % scene->material_count;
     struct scene_material *a = &scene->materials[i], *b = &scene->materials[k];
-    struct scene_material swapped = *a;
-    char *name_a = a->name, *name_b = b->name;
-    *a = *b;
-    *b = swapped;
-    a->name = name_a;
-    b->name = name_b;
+    const struct scene_material was_a = *a, was_b = *b;
+    *a = was_b;
+    *b = was_a;
+    a->name = was_a.name;
+    b->name = was_b.name;
     for (int c = 0; c < 3; ++c) {
         a->emission[c] += (float)glow;
         b->emission[c] += (float)glow;
@@ -150,20 +149,13 @@ static bool put_fault(struct scene *scene, const whit_fault *fault)
 whit_result scene_fault(const whit_log *log, const struct scene_side *side,
                         const whit_fault *faults, uint32_t count, struct scene **out)
 {
+    *out = NULL;
     bool *back = calloc(side->parts->count, sizeof *back);
     whit_result result = back ? scene_mix_begin(log, side, side, back, out) : WHIT_ERROR_MEMORY;
     free(back);
-    if (result != WHIT_OK)
-        return result;
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
         if (!put_fault(*out, &faults[i]))
             result = WHIT_ERROR_USAGE;
     }
-    if (result == WHIT_OK)
-        result = freeze_complete(*out);
-    if (result != WHIT_OK) {
-        scene_destroy(*out);
-        *out = NULL;
-    }
-    return result;
+    return scene_mix_end(result, out);
 }

@@ -34,10 +34,8 @@ static whit_result check_nodes(struct scene *scene)
             scene_note(scene, SCENE_NOTE_WARNING,
                        "node %u `%s`: its transform is not finite and is ignored", i,
                        text_token(node->name).text);
-            char *name = node->name;
-            uint32_t parent = node->parent;
-            *node = (struct scene_node){.name = name,
-                                        .parent = parent,
+            *node = (struct scene_node){.name = node->name,
+                                        .parent = node->parent,
                                         .matrix = affine_identity(),
                                         .rotation = {0, 0, 0, 1},
                                         .scale = {1, 1, 1}};
@@ -283,18 +281,6 @@ static whit_result drop_unused_meshes(struct scene *scene)
     return WHIT_OK;
 }
 
-/* Sets a flat emitter's direction to edge_u x edge_v, which is not normalized yet. */
-static void set_emitter_direction(struct scene_light *light)
-{
-    const double *u = light->edge_u, *v = light->edge_v;
-    if (!scene_light_is_flat(light))
-        return;
-    for (int i = 0; i < 3; ++i) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        light->direction[i] = u[j] * v[k] - u[k] * v[j];
-    }
-}
-
 static bool usable_light(const struct scene_light *light)
 {
     bool finite = true;
@@ -333,7 +319,8 @@ static whit_result check_lights(struct scene *scene)
     }
     for (uint32_t i = 0; i < scene->light_count; ++i) {
         struct scene_light *light = &scene->lights[i];
-        set_emitter_direction(light);
+        if (scene_light_is_flat(light)) /* mend_light makes it unit */
+            double3_cross(light->edge_u, light->edge_v, light->direction);
         if (usable_light(light)) {
             uint32_t count = mend_light(light);
             if (count)
@@ -355,35 +342,27 @@ static whit_result check_lights(struct scene *scene)
 
 static bool usable_camera(const struct scene_camera *camera)
 {
-    double distance2 = 0.0;
+    double distance = double3_distance(camera->target, camera->eye);
     for (int i = 0; i < 3; ++i) {
-        double step = camera->target[i] - camera->eye[i];
-        distance2 += step * step;
         if (!isfinite(camera->up[i]))
             return false;
     }
     if (camera->kind == WHIT_CAMERA_ORTHOGRAPHIC &&
         !(camera->height > 0.0f && isfinite(camera->height)))
         return false;
-    return isfinite(distance2) && distance2 > 0.0;
+    return isfinite(distance) && distance > 0.0;
 }
 
 /* Brings a camera's values into their ranges. An `up` parallel to the view is replaced by the y
    axis, or by z where the view is close to y. */
 static void mend_camera(struct scene_camera *camera)
 {
-    double view[3], length2 = 0.0, up2 = 0.0, cross2 = 0.0;
-    for (int i = 0; i < 3; ++i) {
+    double view[3], across[3];
+    for (int i = 0; i < 3; ++i)
         view[i] = camera->target[i] - camera->eye[i];
-        length2 += view[i] * view[i];
-        up2 += camera->up[i] * camera->up[i];
-    }
-    for (int i = 0; i < 3; ++i) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        double c = view[j] * camera->up[k] - view[k] * camera->up[j];
-        cross2 += c * c;
-    }
-    if (!(cross2 > 1e-16 * length2 * up2)) {
+    double3_cross(view, camera->up, across);
+    double length2 = double3_dot(view, view), up2 = double3_dot(camera->up, camera->up);
+    if (!(double3_dot(across, across) > 1e-16 * length2 * up2)) {
         int axis = fabs(view[1]) < 0.9 * sqrt(length2) ? 1 : 2;
         for (int i = 0; i < 3; ++i)
             camera->up[i] = i == axis ? 1.0 : 0.0;

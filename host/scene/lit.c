@@ -35,11 +35,6 @@ struct hit {
     const struct scene_material *material;
 };
 
-static bool is_black(const float rgb[3])
-{
-    return !(rgb[0] > 0.0f || rgb[1] > 0.0f || rgb[2] > 0.0f);
-}
-
 /* Intersects a triangle in object space, on both sides: Moeller and Trumbore (1997). */
 static bool meet(const struct scene_mesh *mesh, uint32_t triangle, const struct ray *ray,
                  struct hit *hit)
@@ -100,8 +95,8 @@ static bool is_solid(const struct scene *scene, const struct hit *hit)
 {
     const struct scene_material *m = hit->material;
     uint8_t texel[4];
-    if (m->alpha == SCENE_ALPHA_OPAQUE || !is_black(m->transmission))
-        return is_black(m->transmission);
+    if (m->alpha == SCENE_ALPHA_OPAQUE || !color_is_black(m->transmission))
+        return color_is_black(m->transmission);
     double opacity = (double)m->opacity;
     if (m->textures[SCENE_SLOT_OPACITY].texture != SCENE_NONE) {
         pick_texel(scene, hit, SCENE_SLOT_OPACITY, texel);

@@ -28,9 +28,9 @@ static const struct scene_side *side_of(const struct mix *mix, whit_part_kind ki
 
 static void *copy_of(struct mix *mix, const void *data, size_t count, size_t bytes)
 {
-    void *copy = data ? array_alloc(count, bytes) : NULL;
+    void *copy = array_copy(data, count, bytes);
     mix->failed |= data && !copy;
-    return copy ? memcpy(copy, data, count * bytes) : NULL;
+    return copy;
 }
 
 /* ---- Records that others refer to: each function gives the new index ---- */
@@ -216,17 +216,11 @@ whit_result scene_mix_begin(const whit_log *log, const struct scene_side *before
     add_environment(&mix);
     for (unsigned kind = 0; kind < SCENE_NAMES; ++kind)
         key_table_finish(&mix.added[kind]);
-    if (good && !mix.failed && !mix.out->lacks_memory)
-        return WHIT_OK;
-    scene_destroy(mix.out);
-    *out = NULL;
-    return WHIT_ERROR_MEMORY;
+    return good && !mix.failed && !mix.out->lacks_memory ? WHIT_OK : WHIT_ERROR_MEMORY;
 }
 
-whit_result scene_mix(const whit_log *log, const struct scene_side *before,
-                      const struct scene_side *after, const bool *back, struct scene **out)
+whit_result scene_mix_end(whit_result result, struct scene **out)
 {
-    whit_result result = scene_mix_begin(log, before, after, back, out);
     if (result == WHIT_OK)
         result = freeze_complete(*out);
     if (result != WHIT_OK) {
@@ -234,4 +228,10 @@ whit_result scene_mix(const whit_log *log, const struct scene_side *before,
         *out = NULL;
     }
     return result;
+}
+
+whit_result scene_mix(const whit_log *log, const struct scene_side *before,
+                      const struct scene_side *after, const bool *back, struct scene **out)
+{
+    return scene_mix_end(scene_mix_begin(log, before, after, back, out), out);
 }

@@ -19,9 +19,11 @@ struct scene_side {
 WHIT_CHECK whit_result scene_mix(const whit_log *log, const struct scene_side *before,
                                  const struct scene_side *after, const bool *back,
                                  struct scene **out);
-/* The same, but not frozen: call freeze_complete to add what scene_freeze derives. */
+/* The same, but not frozen; then scene_mix_end freezes it, or destroys it where `result`, or what
+   it does, is an error. */
 WHIT_CHECK whit_result scene_mix_begin(const whit_log *log, const struct scene_side *before,
                                        const struct scene_side *after, const bool *back,
                                        struct scene **out);
+WHIT_CHECK whit_result scene_mix_end(whit_result result, struct scene **out);
 
 #endif

@@ -44,13 +44,12 @@ void scene_mesh_finish(struct scene_mesh *mesh)
     *mesh = (struct scene_mesh){0};
 }
 
-/* A copy of `count` elements of `bytes` each; NULL stays NULL. Without memory sets *good to
-   false. */
+/* array_copy; without memory sets *good to false. */
 static void *copy_of(const void *data, size_t count, size_t bytes, bool *good)
 {
-    void *copy = data ? array_alloc(count, bytes) : NULL;
+    void *copy = array_copy(data, count, bytes);
     *good = *good && (copy || !data);
-    return copy ? memcpy(copy, data, count * bytes) : NULL;
+    return copy;
 }
 
 bool scene_mesh_copy(const struct scene_mesh *mesh, struct scene_mesh *out)
@@ -58,7 +57,7 @@ bool scene_mesh_copy(const struct scene_mesh *mesh, struct scene_mesh *out)
     size_t vertices = mesh->vertex_count, triangles = mesh->triangle_count;
     bool good = true;
     *out = *mesh;
-    out->name = mesh->name ? string_copy(mesh->name) : NULL;
+    out->name = string_copy(mesh->name);
     out->spheres = copy_of(mesh->spheres, mesh->sphere_count, 4 * sizeof(float), &good);
     out->positions = copy_of(mesh->positions, vertices, 3 * sizeof(float), &good);
     out->normals = copy_of(mesh->normals, vertices, 3 * sizeof(float), &good);
@@ -71,7 +70,7 @@ bool scene_mesh_copy(const struct scene_mesh *mesh, struct scene_mesh *out)
     out->groups = copy_of(mesh->groups, mesh->group_count, sizeof *mesh->groups, &good);
     for (uint32_t i = 0; out->groups && i < out->group_count; ++i) {
         out->groups[i].name = string_copy(mesh->groups[i].name);
-        good = good && out->groups[i].name;
+        good = good && (out->groups[i].name || !mesh->groups[i].name);
     }
     if (good && (out->name || !mesh->name))
         return true;

@@ -1,7 +1,5 @@
 #include "scene/shaper.h"
 
-#include <math.h>
-
 #include "base/array.h"
 #include "base/same.h"
 #include "base/vec.h"
@@ -47,7 +45,7 @@ uint32_t shaper_vertex(struct shaper *shaper, const double position[3], const do
     uint32_t vertex = shaper->vertex++;
     if (shaper->measuring)
         return vertex;
-    double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    double length = double3_length(normal);
     for (size_t i = 0; i < 3; ++i) {
         mesh->positions[3 * (size_t)vertex + i] = (float)position[i] + 0.0f; /* turns -0 into 0 */
         mesh->normals[3 * (size_t)vertex + i] = (float)(normal[i] / length);
@@ -72,6 +70,16 @@ void shaper_quad(struct shaper *shaper, uint32_t a, uint32_t b, uint32_t c, uint
 {
     shaper_triangle(shaper, a, b, c);
     shaper_triangle(shaper, a, c, d);
+}
+
+void shaper_grid(struct shaper *shaper, uint32_t first, uint32_t rows, uint32_t columns)
+{
+    for (uint32_t j = 0; j < rows; ++j) {
+        for (uint32_t i = 0; i < columns; ++i) {
+            uint32_t a = first + j * (columns + 1) + i, b = a + columns + 1;
+            shaper_quad(shaper, a, b, b + 1, a + 1);
+        }
+    }
 }
 
 void shape_circle_point(uint32_t step, uint32_t steps, double *cosine, double *sine)

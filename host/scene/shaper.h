@@ -23,6 +23,8 @@ uint32_t shaper_vertex(struct shaper *shaper, const double position[3], const do
 void shaper_triangle(struct shaper *shaper, uint32_t a, uint32_t b, uint32_t c);
 /* Corners in counter-clockwise order. */
 void shaper_quad(struct shaper *shaper, uint32_t a, uint32_t b, uint32_t c, uint32_t d);
+/* The quads between (rows + 1) x (columns + 1) vertices from `first` on, row by row. */
+void shaper_grid(struct shaper *shaper, uint32_t first, uint32_t rows, uint32_t columns);
 
 /* Cosine and sine of angle 2 pi * step / steps. Step `steps` gives the same bits as step 0. */
 void shape_circle_point(uint32_t step, uint32_t steps, double *cosine, double *sine);

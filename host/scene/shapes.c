@@ -60,12 +60,7 @@ whit_result shape_plane(double width, double depth, uint32_t steps, double uv_sc
                           (double[]){0, 1, 0}, u * uv_scale, v * uv_scale);
         }
     }
-    for (uint32_t j = 0; j < steps; ++j) {
-        for (uint32_t i = 0; i < steps; ++i) {
-            uint32_t a = j * (steps + 1) + i, b = a + steps + 1;
-            shaper_quad(&shaper, a, b, b + 1, a + 1);
-        }
-    }
+    shaper_grid(&shaper, 0, steps, steps);
     *out = shaper.mesh;
     return WHIT_OK;
 }
@@ -236,9 +231,8 @@ whit_result shape_torus(double radius, double tube, uint32_t segments, uint32_t 
     if (!shape_positive(radius) || !shape_positive(tube) || segments < 3 || sides < 3 ||
         segments > STEPS_MAX || sides > STEPS_MAX)
         return WHIT_ERROR_USAGE;
-    uint32_t row = sides + 1;
-    whit_result result =
-        shaper_init(&shaper, (uint64_t)row * (segments + 1), 2 * (uint64_t)segments * sides);
+    whit_result result = shaper_init(&shaper, (sides + UINT64_C(1)) * (segments + 1),
+                                     2 * (uint64_t)segments * sides);
     if (result != WHIT_OK)
         return result;
     for (uint32_t i = 0; i <= segments; ++i) {
@@ -251,12 +245,7 @@ whit_result shape_torus(double radius, double tube, uint32_t segments, uint32_t 
                           (double)i / segments, 1.0 - (double)j / sides);
         }
     }
-    for (uint32_t i = 0; i < segments; ++i) {
-        for (uint32_t j = 0; j < sides; ++j) {
-            uint32_t a = i * row + j, b = a + row;
-            shaper_quad(&shaper, a, b, b + 1, a + 1);
-        }
-    }
+    shaper_grid(&shaper, 0, segments, sides);
     *out = shaper.mesh;
     return WHIT_OK;
 }
@@ -372,12 +361,7 @@ whit_result shape_terrain(double size, double height, uint32_t steps, uint32_t s
                 (double[]){-slope * dx, 1.0, -slope * dz}, u, v);
         }
     }
-    for (uint32_t j = 0; j < steps; ++j) {
-        for (uint32_t i = 0; i < steps; ++i) {
-            uint32_t a = j * (steps + 1) + i, b = a + steps + 1;
-            shaper_quad(&shaper, a, b, b + 1, a + 1);
-        }
-    }
+    shaper_grid(&shaper, 0, steps, steps);
     *out = shaper.mesh;
     return WHIT_OK;
 }

@@ -109,10 +109,7 @@ static void add_lathe(struct atrium *atrium, const struct frame *frame, const do
             put(atrium, frame, (double[]){size * high[0] * c, tall * high[1], -size * high[0] * s},
                 normal);
         }
-        for (uint32_t i = 0; i < segments; ++i) {
-            uint32_t a = first + 2 * i;
-            shaper_quad(&atrium->shaper, a, a + 2, a + 3, a + 1);
-        }
+        shaper_grid(&atrium->shaper, first, segments, 1);
     }
 }
 
@@ -131,12 +128,7 @@ static void add_ring(struct atrium *atrium, const struct frame *frame, double ra
                 (double[]){ct * c, ct * s, st});
         }
     }
-    for (uint32_t i = 0; i < segments; ++i) {
-        for (uint32_t j = 0; j < sides; ++j) {
-            uint32_t a = first + i * (sides + 1) + j, b = a + sides + 1;
-            shaper_quad(&atrium->shaper, a, b, b + 1, a + 1);
-        }
-    }
+    shaper_grid(&atrium->shaper, first, segments, sides);
 }
 
 /* A wall from y = 0 to `top` over an arch of `radius`; the frame's z is its front. */
@@ -180,7 +172,7 @@ static void add_arch(struct atrium *atrium, const struct frame *frame, double ra
 static void add_beam(struct atrium *atrium, const double p[3], const double q[3], double thickness)
 {
     double along[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, h = 0.5 * thickness;
-    double length = sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+    double length = double3_length(along);
     struct frame frame = frame_at(p[0], p[1], p[2]);
     for (int i = 0; i < 3; ++i)
         frame.axes[0][i] = along[i] / length;
@@ -269,10 +261,7 @@ static void add_vaults(struct atrium *atrium)
                     (double[]){radius * c, radius * s, far ? -atrium->end : atrium->end},
                     (double[]){-c, -s, 0});
         }
-        for (uint32_t i = 0; i < segments; ++i) {
-            uint32_t a = first + 2 * i;
-            shaper_quad(&atrium->shaper, a, a + 2, a + 3, a + 1);
-        }
+        shaper_grid(&atrium->shaper, first, segments, 1);
         paint(atrium, pale);
         for (uint32_t i = 0; i <= atrium->bays; ++i) {
             frame.origin[2] = -atrium->end + PITCH * i;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/vec.h"
 #include "scene/pose.h"
 
 #define TRIANGLES_MAX 400000u
@@ -33,11 +34,11 @@ static void add_triangles(struct soup *soup, const struct scene *scene,
         const struct scene_material *material = &scene->materials[mesh->materials[t]];
         soup->pictured[soup->count] = material->textures[SCENE_SLOT_DIFFUSE].texture != SCENE_NONE;
         float *out = soup->corners + 9 * (size_t)soup->count++;
+        double corners[3][3];
+        scene_mesh_corners(mesh, t, corners);
         for (int i = 0; i < 3; ++i) {
-            const float *p = mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)t + (size_t)i];
             int at = mirrored ? 2 - i : i;
-            put_corner(soup, matrix, (double[]){(double)p[0], (double)p[1], (double)p[2]},
-                       out + 3 * at);
+            put_corner(soup, matrix, corners[i], out + 3 * at);
         }
     }
 }
@@ -256,7 +257,7 @@ static double size_of(const struct part *part)
     double size[3];
     for (int k = 0; k < 3; ++k)
         size[k] = fmax(part->hi[k] - part->lo[k], 0.0);
-    return sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
+    return double3_length(size);
 }
 
 /* Sets the core's interval along an axis: it holds the centroids of all triangles but the share
@@ -290,7 +291,8 @@ static bool is_in(const float *corners, const struct part *part)
 static struct part find_box(const struct soup *soup, struct part core, double around,
                             uint32_t *count)
 {
-    struct part part = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    struct part part;
+    double3_no_box(part.lo, part.hi);
     for (int k = 0; k < 3; ++k) {
         core.lo[k] -= around;
         core.hi[k] += around;
@@ -301,10 +303,9 @@ static struct part find_box(const struct soup *soup, struct part core, double ar
         if (!is_in(p, &core))
             continue;
         ++*count;
-        for (int i = 0; i < 9; ++i) {
-            part.lo[i % 3] = fmin(part.lo[i % 3], (double)p[i]);
-            part.hi[i % 3] = fmax(part.hi[i % 3], (double)p[i]);
-        }
+        for (int i = 0; i < 9; i += 3)
+            double3_grow_box(part.lo, part.hi,
+                             (double[]){(double)p[i], (double)p[i + 1], (double)p[i + 2]});
     }
     return part;
 }
