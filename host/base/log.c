@@ -42,29 +42,19 @@ whit_result log_failure(const whit_log *log, whit_result result, const char *for
 
 const char *whit_result_name(whit_result result)
 {
-    switch (result) {
-    case WHIT_OK:
-        return "ok";
-    case WHIT_ERROR_FAILED:
-        return "failed";
-    case WHIT_ERROR_USAGE:
-        return "bad usage";
-    case WHIT_ERROR_INPUT:
-        return "bad input";
-    case WHIT_ERROR_OUTPUT:
-        return "cannot write";
-    case WHIT_ERROR_NO_DEVICE:
-        return "no usable device";
-    case WHIT_ERROR_DEVICE:
-        return "device failed";
-    case WHIT_ERROR_MEMORY:
-        return "out of memory";
-    case WHIT_ERROR_STATUS:
-        return "kernel status";
-    case WHIT_ERROR_TIME_LIMIT:
-        return "time limit";
-    case WHIT_ERROR_CANCELLED:
-        return "cancelled";
-    }
-    return "unknown result";
+    static const char *const names[] = {
+        [WHIT_OK] = "ok",
+        [WHIT_ERROR_FAILED] = "failed",
+        [WHIT_ERROR_USAGE] = "bad usage",
+        [WHIT_ERROR_INPUT] = "bad input",
+        [WHIT_ERROR_OUTPUT] = "cannot write",
+        [WHIT_ERROR_NO_DEVICE] = "no usable device",
+        [WHIT_ERROR_DEVICE] = "device failed",
+        [WHIT_ERROR_MEMORY] = "out of memory",
+        [WHIT_ERROR_STATUS] = "kernel status",
+        [WHIT_ERROR_TIME_LIMIT] = "time limit",
+        [WHIT_ERROR_CANCELLED] = "cancelled",
+    };
+    bool known = (size_t)result < sizeof names / sizeof *names && names[result];
+    return known ? names[result] : "unknown result";
 }

@@ -106,7 +106,7 @@ whit_result reference_create(const whit_log *log, struct accel *accel,
     *out = NULL;
     struct reference *r = calloc(1, sizeof *r);
     if (!r)
-        return WHIT_ERROR_MEMORY;
+        return log_failure(log, WHIT_ERROR_MEMORY, "out of memory for the reference");
     r->log = log_or_silence(log);
     r->accel = accel;
     r->scene = accel->scene;

@@ -61,14 +61,16 @@ static bool brighten(float rgb[3], double amount)
     return rgb[0] + rgb[1] + rgb[2] > 0.0f;
 }
 
-/* Brightens a light by the share `amount`, or an emissive material where there is no light. */
+/* Brightens a light by the share `amount`, or an emissive material where there is no light: one
+   that is not black. */
 static bool change_light(struct scene *scene, uint64_t *random, double amount)
 {
-    if (scene->light_count)
-        return brighten(scene->lights[draw(random, scene->light_count)].color, amount);
-    uint32_t start = scene->material_count ? draw(random, scene->material_count) : 0;
-    for (uint32_t i = 0; i < scene->material_count; ++i) {
-        if (brighten(scene->materials[(start + i) % scene->material_count].emission, amount))
+    uint32_t count = scene->light_count ? scene->light_count : scene->material_count;
+    uint32_t start = count ? draw(random, count) : 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        uint32_t k = (start + i) % count;
+        float *rgb = scene->light_count ? scene->lights[k].color : scene->materials[k].emission;
+        if (brighten(rgb, amount))
             return true;
     }
     return false;

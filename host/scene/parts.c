@@ -70,14 +70,16 @@ static char *channel_name(const struct scene *scene, const struct scene_names *n
     return string_format("%s %s", nodes->names[channel->node], paths[channel->path]);
 }
 
-/* Adds the name `own`, made unique by a number where it is empty or taken. */
-static bool add_name(struct scene_names *names, const char *own)
+/* Adds the name `own`, made unique by a number where it is empty or taken. numbers[i]: how many
+   numbers behind the name of record i are taken for sure. */
+static bool add_name(struct scene_names *names, uint32_t *numbers, const char *own)
 {
-    uint32_t index = names->count, taken, number = 2;
+    uint32_t index = names->count, first = SCENE_NONE, taken;
     char *name = own[0] ? string_copy(own) : string_format("#%u", index);
     while (name && key_table_find(&names->table, name, strlen(name), &taken)) {
+        first = first == SCENE_NONE ? taken : first;
         free(name);
-        name = string_format("%s#%u", own, number++);
+        name = string_format("%s#%u", own, 2 + numbers[first]++);
     }
     names->names[index] = name;
     names->count += name != NULL;
@@ -102,19 +104,20 @@ static bool add_names(const struct scene *scene, unsigned kind, struct scene_par
     struct scene_names *names = &parts->names[kind];
     uint32_t count = count_of(scene, kind);
     const char **objects = kind == WHIT_PART_MESH ? object_names(scene) : NULL;
+    uint32_t *numbers = array_alloc_zeroed(count, sizeof *numbers);
     names->names = array_alloc_zeroed(count, sizeof *names->names);
-    bool good = names->names && (objects || kind != WHIT_PART_MESH);
+    bool good = names->names && numbers && (objects || kind != WHIT_PART_MESH);
     for (uint32_t i = 0; good && i < count; ++i) {
         const char *own = objects && objects[i] ? objects[i] : own_name(scene, kind, i);
         char *made = kind == WHIT_PART_ANIMATION
                          ? channel_name(scene, &parts->names[SCENE_NAMES_NODE], i)
                          : NULL;
-        good = (made || kind != WHIT_PART_ANIMATION) && add_name(names, made  ? made
-                                                                        : own ? own
-                                                                              : "");
+        own = made ? made : own ? own : "";
+        good = (made || kind != WHIT_PART_ANIMATION) && add_name(names, numbers, own);
         free(made);
     }
     free(objects);
+    free(numbers);
     return good;
 }
 

@@ -1,4 +1,5 @@
 /* Tests the watching of files that are written, replaced, or left alone. */
+#include <fcntl.h>
 #include <semaphore.h>
 #include <time.h>
 
@@ -63,6 +64,24 @@ TEST_IN(others_are_nobodys_business, folder_begin, folder_end)
     watch_add(watch, in_folder("a.json")); /* again, after the folder was let go */
     put_text("a.json", "4");
     assert_true(watch_changed(watch));
+    watch_destroy(watch);
+}
+
+/* Two files take turns, so that no event is merged with the one before it. */
+TEST_IN(more_events_than_there_is_room_for_are_a_change, folder_begin, folder_end)
+{
+    unsigned room = 0;
+    FILE *limit = fopen("/proc/sys/fs/inotify/max_queued_events", "r");
+    if (!limit || fscanf(limit, "%u", &room) != 1 || room > 100000)
+        skip();
+    fclose(limit);
+    struct watch *watch = watch_create(wake);
+    watch_add(watch, in_folder("a.json"));
+    for (unsigned i = 0; i < room; ++i)
+        assert_int_equal(close(open(in_folder(i % 2 ? "b" : "c"), O_WRONLY | O_CREAT, 0600)), 0);
+    put_text("a.json", "1"); /* which gets lost */
+    assert_true(watch_changed(watch));
+    assert_false(watch_changed(watch));
     watch_destroy(watch);
 }
 

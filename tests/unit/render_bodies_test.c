@@ -2,6 +2,7 @@
 #include "../cases.h"
 #include "../random.h"
 #include "../scenes.h"
+#include "../wrapped.h"
 #include "picture/bodies.h"
 #include "scene/pose.h"
 #include "unit.h"
@@ -30,6 +31,13 @@ static bool come_within(const struct scene *scene, double distance)
     bool within = bodies_come_within(scene, &pose, &bodies, distance);
     bodies_finish(&bodies);
     return within;
+}
+
+static bool no_memory; /* for arrays with elements */
+
+WRAPPED(bool, array_reserve, void **items, uint32_t count, uint32_t *capacity, size_t bytes)
+{
+    return (!no_memory || count == 0) && __real_array_reserve(items, count, capacity, bytes);
 }
 
 /* Asserts that the distance found between two bodies is `gap`, within 0.1 %; 0: they touch. */
@@ -150,4 +158,21 @@ TEST(no_distance_is_too_large)
         scene_ready(scene);
         assert_true(come_within(scene, nearest + 1e-6));
     }
+}
+
+/* A list that memory did not suffice for is made anew, not taken for the whole one. */
+TEST(half_a_list_is_none)
+{
+    own_scene *scene = scene_begin(NULL, "balls");
+    put_glass(scene, mesh_balls((double[]){0, 0, 0, 1}, 1), "ball", 0, 0, 0);
+    scene_put_again(scene, 0, &(struct put){.at = {1, 0, 0}});
+    own_pose pose;
+    struct bodies bodies = {0};
+    assert_int_equal(scene_pose_init(scene_ready(scene), 0.0, &pose), WHIT_OK);
+    no_memory = true;
+    assert_false(bodies_list(scene, &pose, &bodies));
+    no_memory = false;
+    assert_true(bodies_list(scene, &pose, &bodies));
+    assert_int_equal(bodies.count, 2);
+    bodies_finish(&bodies);
 }

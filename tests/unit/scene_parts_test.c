@@ -365,6 +365,19 @@ TEST(names_are_unique)
     assert_null(scene_parts_find(&loaded.parts, WHIT_PART_LIGHT, "a")); /* a light by whit */
 }
 
+/* That takes milliseconds, not minutes as where each name is tried with all numbers from 2 on. */
+TEST(many_records_of_one_name)
+{
+    enum { COUNT = 60000 };
+    struct scene *scene = scene_begin(NULL, "names");
+    for (int i = 0; i < COUNT; ++i)
+        scene_put_node(scene, SCENE_NONE, 0, 0, 0);
+    own_loaded loaded;
+    take(&loaded, scene_ready(scene));
+    assert_string_equal(scene_parts_name(&loaded.parts, SCENE_NAMES_NODE, 1), "node#2");
+    assert_string_equal(scene_parts_name(&loaded.parts, SCENE_NAMES_NODE, COUNT - 1), "node#60000");
+}
+
 /* ---- Faults ---- */
 
 /* The parts that a fault alters are of the kind that it says. */
@@ -401,4 +414,20 @@ TEST(a_fault_alters_its_parts_alone)
     struct scene *made;
     assert_int_equal(scene_fault(NULL, &before.side, &none, 1, &made), WHIT_ERROR_USAGE);
     assert_null(made);
+}
+
+TEST(a_fault_of_light_finds_one_that_is_not_black)
+{
+    struct scene *scene = scene_begin(NULL, "dark");
+    for (int i = 0; i < 4; ++i)
+        scene_put_lamp(scene, i, 2, 1, i == 2 ? 1.0f : 0.0f);
+    own_loaded before;
+    take(&before, scene_ready(scene));
+    for (uint64_t seed = 0; seed < 8; ++seed) {
+        const whit_fault fault = {WHIT_FAULT_LIGHT, seed, 0.5};
+        struct scene *made = NULL;
+        assert_int_equal(scene_fault(NULL, &before.side, &fault, 1, &made), WHIT_OK);
+        own_scene *changed = made;
+        assert_true(changed->lights[2].color[0] == 1.5f);
+    }
 }
