@@ -148,7 +148,7 @@ bool watch_changed(struct watch *watch)
     while (watch && (bytes = read(watch->fd, buffer, sizeof buffer)) > 0) {
         for (ssize_t at = 0; at < bytes;) {
             const struct inotify_event *event = (const void *)(buffer + at);
-            /* Of events that the queue had no room for nothing is known. */
+            /* Nothing is known of events that the queue had no room for. */
             changed = changed || (event->mask & IN_Q_OVERFLOW) || is_watched(watch, event);
             at += (ssize_t)(sizeof *event + event->len);
         }

@@ -365,7 +365,7 @@ TEST(names_are_unique)
     assert_null(scene_parts_find(&loaded.parts, WHIT_PART_LIGHT, "a")); /* a light by whit */
 }
 
-/* That takes milliseconds, not minutes as where each name is tried with all numbers from 2 on. */
+/* Takes minutes where each name is tried with all numbers from 2 on. */
 TEST(many_records_of_one_name)
 {
     enum { COUNT = 60000 };
