@@ -22,13 +22,14 @@ read_states() {
         "$OUT/states" >"$OUT/values" || FAILED=1
 }
 
-# steps: prints the replay of a table, and writes its expectations to $OUT/wanted. A row is
+# steps: prints the replay of a table, and writes its expectations to $OUT/wanted and its commands to $OUT/commands. A row is
 #     NAME: EVENT, EVENT xN | FIELD = VALUE | FIELD > NUMBER | FIELD has PART | FIELD as OTHER | FIELD not as OTHER
 # The events come first, each N times, then `still`, then `state NAME`. In that state the field is VALUE, or a larger
 # number, or contains PART, or is (or is not) as in the state OTHER. `NAME!` leaves out `still`. A line that begins with
-# `|` continues the row before; other lines are events.
+# `|` continues the row before, and `do COMMAND` is what this script does as soon as the state has come; other lines are
+# events.
 steps() {
-    awk -F ' *[|] *' -v wanted="$OUT/wanted" '
+    awk -F ' *[|] *' -v wanted="$OUT/wanted" -v commands="$OUT/commands" '
         function expect(    i, at) {
             for (i = 2; i <= NF; ++i) {
                 at = match($i, / (=|>|has|as|not as)( |$)/) # 0: as_wanted fails
@@ -36,8 +37,9 @@ steps() {
                     substr($i, at + RLENGTH) >wanted
             }
         }
-        BEGIN { printf "" >wanted }
+        BEGIN { printf "" >wanted; printf "" >commands }
         /^ *[|]/ { expect(); next }
+        sub(/^do /, "") { print name "\t" $0 >commands; next }
         !/^[A-Za-z0-9_-]+[:!]/ { print; next }
         {
             split($1, head, /[:!] */)
@@ -62,8 +64,17 @@ play() {
     shift
     steps >"$OUT/replay"
     rm -rf "$XDG_STATE_HOME"
-    run view "$@" --replay "$OUT/replay" --quiet
-    mv "$OUT/stdout" "$OUT/states"
+    : >"$OUT/states"
+    timeout $((${LIMIT_S:-100} * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$@" --replay "$OUT/replay" --quiet \
+        <"$INPUT" >"$OUT/pipe" 2>"$OUT/stderr" &
+    viewer=$!
+    while read -r state; do
+        printf '%s\n' "$state" >>"$OUT/states"
+        at=${state#*\"at\":\"}
+        eval "$(awk -F '\t' -v at="${at%%\"*}" '$1 == at { print $2 }' "$OUT/commands")"
+    done <"$OUT/pipe"
+    wait $viewer
+    status=$?
     read_states
     check "$what: exit code 0 (got $status)" test "$status" -eq 0
     test "$status" -eq 0 || sed 's/^/        said: /' "$OUT/stderr"
@@ -71,25 +82,6 @@ play() {
         test "$(grep -cv "${EXPECTED:-^$}" "$OUT/stderr")" -eq 0
     check "$what: all states are there" test "$(grep -c '^state' "$OUT/replay")" -eq \
         "$(grep -c '^{.*}$' "$OUT/states")"
-    as_wanted
-}
-
-# follow WHAT OPTION...: like play, with the replay in $OUT/replay, and calls on_state with each state as it comes.
-# Messages on standard error are left to the caller.
-follow() {
-    what=$1
-    shift
-    : >"$OUT/states"
-    timeout $((100 * ${WHIT_TEST_PATIENCE:-1})) "$WHIT" view "$@" --replay "$OUT/replay" --quiet \
-        >"$OUT/pipe" 2>"$OUT/stderr" &
-    viewer=$!
-    while read -r state; do
-        printf "%s\n" "$state" >>"$OUT/states"
-        on_state "$state"
-    done <"$OUT/pipe"
-    wait $viewer
-    check "$what: exit code 0" test $? -eq 0
-    read_states
     as_wanted
 }
 

@@ -123,30 +123,27 @@ if part 0 2; then
     sed 's/"size": 1,/"size": 2,/' "$CUBE" >larger.json
     sed 's/"shape": "box"/"shape": "boxx"/' "$CUBE" >broken.json
     line=$(grep -n boxx broken.json | cut -d : -f 1)
-    steps >"$OUT/replay" <<END
+    EXPECTED="^whit: error: \(own.json:$line\|late.json\):"
+    play "read again" own.json --size 96x64 <<END
 start:
 turned: move 40 30, button left down, move 45 30, button left up
+do mv broken.json own.json
 until toast = own.json was written: reading it again
 broken: until error, press R | error has own.json:$line: | frame.ids as turned | frame.pixels as turned
 move 40 30
 alive: button left down, move 45 34, button left up, still, click 48 32 | error as broken | frame.ids not as broken
     | probe.rays > 0
 again: drop own.json | frame.pixels as alive | words as alive
+do mv larger.json own.json
 until error = $NONE
 mended: | error = | scene = own.json | frame.ids not as alive | words as alive
 missing! drop late.json, until error | scene = own.json
+do mv own.json late.json
 came: until scene = late.json | error = | scene = late.json
 END
-    on_state() {
-        case $1 in
-        *'"at":"turned"'*) mv broken.json own.json ;;
-        *'"at":"again"'*) mv larger.json own.json ;;
-        *'"at":"missing"'*) mv own.json late.json ;;
-        esac
-    }
-    follow "read again" own.json --size 96x64
     check "each error once on standard error" test "$(cut -d : -f 3,4 "$OUT/stderr" | tr '\n' ' ')" = \
         " own.json:$line  own.json:$line  late.json: there is no such file "
+    EXPECTED=
 fi
 
 if part 1 2; then
@@ -161,31 +158,28 @@ if part 1 2; then
     run render "$CUBE" --size 8x4 -o sky.new.exr --quiet
     cp one.png parts/t.png
     run render "$SCENES/whitted.json" --size 8x4 -o around.exr --quiet
-    steps >"$OUT/replay" <<END
+    EXPECTED="^whit: error: .*parts/late.obj"
+    play "each file of it" whole.json --size 96x64 --environment around.exr <<END
 start: | error =
+do sed 's/v 0 1 0/v 0 3 0/' parts/m.obj >m.new && mv m.new parts/m.obj
 until toast
 model: | frame.ids not as start | error =
 model-told! wait 9000 | toast =
+do mv two.png parts/t.png
 until toast
 texture: | frame.ids as model | frame.pixels not as model
 texture-told! wait 9000 | toast =
+do mv sky.new.exr around.exr
 until toast
 sky: | frame.ids as model | frame.pixels not as texture
+do mv lacks.json whole.json
 until error
 lacks: | error has parts/late.obj | frame.pixels as sky
+do sed 's/v 0 3 0/v 3 3 0/' parts/m.obj >m.new && mv m.new parts/late.obj
 until error = $NONE
 came: | frame.ids not as sky | scene = whole.json
 END
-    on_state() {
-        case $1 in
-        *'"at":"start"'*) sed 's/v 0 1 0/v 0 3 0/' parts/m.obj >m.new && mv m.new parts/m.obj ;;
-        *'"at":"model-told"'*) mv two.png parts/t.png ;;
-        *'"at":"texture-told"'*) mv sky.new.exr around.exr ;;
-        *'"at":"sky"'*) mv lacks.json whole.json ;;
-        *'"at":"lacks"'*) sed 's/v 0 3 0/v 3 3 0/' parts/m.obj >m.new && mv m.new parts/late.obj ;;
-        esac
-    }
-    follow "each file of it" whole.json --size 96x64 --environment around.exr
+    EXPECTED=
 fi
 
 # If the scene cannot be read at the start, the viewer ends with an error.

@@ -3,6 +3,7 @@
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 mkdir -p "$OUT/here/live/part" && cd "$OUT/here" || exit 1
+EXPECTED="^whit: \(error\|note\|warning\): " # they are looked at below
 
 cat >live/a.glsl <<'END'
 #include "part/tint.glsl"
@@ -57,22 +58,26 @@ bomb() {
 # reads the first: an empty file is an error that no state waits for.
 put() { cp "$1" live/new && mv live/new "$2"; }
 if part 0 2; then
-    steps >"$OUT/replay" <<END
+    play "saves" "$CUBE" --size 200x150 --ui-scale 0.5 --shader live/a.glsl --aov heigth <<END
 shown! until shader | shader.hash = $white
 start: | toast has did you mean \`height\`? | shader.hash = $white | shader.files = 2 | shader.sliders = 2 | render has --shader live/a.glsl
+do cp red.new live/part/tint.glsl # as an editor writes it
 until shader.first = 1
 step! | shader.hash = $red
 red: | quality = full size, 1 sample | frame.ids as start | frame.pixels not as start | error =
+do cp broken.new live/part/tint.glsl
 until error
 told: | toast as red | change.what = shader a.glsl, read again
 broken: press R | error has live/part/tint.glsl:2:11: 'wrong' | error has live/part/tint.glsl:3: 'here' | errors_drawn = 5 | error has live/part/deep.glsl:2:14: 'nowhere'
     | error has live/part/tint.glsl:4:11: 'other' | error has live/part/tint.glsl:5:9: 'far' | frame.pixels as red | frame.ids as start | shader.hash = $red
 turned: move 40 30, button left down, move 45 30, button left up | error as broken | frame.ids not as broken
+do put green.new live/part/tint.glsl
 until error = $NONE
 until shader.changed
 mended: | shader.changed has ms [ | shader.changed has ids equal  preview | shader.refused = 1 | shader.hash = $green | frame.pixels not as turned | frame.ids as turned
 beside: press I | compare.mode = split | compare.other_ids = 0 | compare.other_colors > 100
 alone: press I | compare.mode = off
+do put blue.new live/part/tint.glsl && put violet.new live/part/tint.glsl
 until shader.hash = $violet
 twice: | frame.pixels not as mended | error =
 prices: press P | toast has the reference, which has no --shader | frame.pixels as twice
@@ -83,15 +88,6 @@ on: choose stepped | render has --set stepped=on | frame.pixels as twice
 height: press F3 | render has --aov height | frame.pixels not as twice | frame.ids as on
 colour: press F3 | frame.pixels as on | frame.ids as on
 END
-    on_state() {
-        case $1 in
-        *'"at":"start"'*) cp red.new live/part/tint.glsl ;;          # as an editor writes it
-        *'"at":"red"'*) cp broken.new live/part/tint.glsl ;;
-        *'"at":"turned"'*) put green.new live/part/tint.glsl ;;
-        *'"at":"alone"'*) put blue.new live/part/tint.glsl && put violet.new live/part/tint.glsl ;;
-        esac
-    }
-    follow "saves" "$CUBE" --size 200x150 --ui-scale 0.5 --shader live/a.glsl --aov heigth
     check "each error is said once" test "$(grep -cE 'error: live/part/(tint.glsl:(2:11|3|4:11|5:9)|deep.glsl:2:14): ' "$OUT/stderr")" -eq 5
     check "and nothing else" test "$(grep -c error: "$OUT/stderr")" -eq 5
     check "each change is said" grep -q "note: a.glsl: .* pixels other .*ids equal  preview [0-9]" "$OUT/stderr"
@@ -144,12 +140,11 @@ END
     expect 0 "another picture" render cube.json --size 8x8 --quiet --shader other.glsl -o other.png
     cp whit-0001.png asked.png
     mv live away
-    steps >"$OUT/replay" <<END
+    play "by the picture" asked.png --yes <<END
 picture:
+do cp other.png asked.png
 later: wait 600, press F12 | shader.hash as picture | frame.pixels as picture
 END
-    on_state() { case $1 in *'"at":"picture"'*) cp other.png asked.png ;; esac }
-    follow "by the picture" asked.png --yes
     mv away live
     again picture
     expect 0 "what is saved of it" compare whit-0001.png whit-0002.png --metric differing --tolerance 0
@@ -191,20 +186,15 @@ if part 0 2; then
     sed 's/environment(dir)/environment(dir) * bright/' st/hook/miss.glsl >broken.new
     sed 's/environment(dir)/environment(dir) * 0.5/' st/hook/miss.glsl >dim.new
     line=$(grep -n bright broken.new | cut -d : -f 1)
-    steps >"$OUT/replay" <<END
+    play "stages" cube.json --size 96x64 --stages st <<END
 start: | shader.files > 10 | error =
+do cp broken.new st/hook/miss.glsl
 until error
 broken: | error has st/hook/miss.glsl:$line: | frame.pixels as start
+do cp dim.new st/hook/new && mv st/hook/new st/hook/miss.glsl
 until error = $NONE
 mended: | frame.pixels not as start | frame.ids as start
 END
-    on_state() {
-        case $1 in
-        *'"at":"start"'*) cp broken.new st/hook/miss.glsl ;;
-        *'"at":"broken"'*) cp dim.new st/hook/new && mv st/hook/new st/hook/miss.glsl ;;
-        esac
-    }
-    follow "stages" cube.json --size 96x64 --stages st
 fi
 
 # ---- Values of dbg(x) in the pixel that was clicked ----
@@ -220,23 +210,18 @@ END
     sed 's/dbg//g' looks.new >plain.new
     versions live/d.glsl plain looks
     VALUE="d.glsl:4: twice ? 2.0 : 1.0 ="
-    steps >"$OUT/replay" <<END
+    play "what values are" cube.json --size 320x240 --ui-scale 0.5 --shader live/d.glsl <<END
 plain: click 4 4 | picked = true | probe.dbg = | probe.number = 1
 slid: press X, press Tab, move 10 10, still, choose twice | probe.number = 1 | frame.pixels not as plain
+do cp looks.new live/d.glsl
 until shader.hash = $looks
 saved: | probe.dbg has $VALUE 2 | probe.dbg has d.glsl:4: dir = ( | frame.pixels as slid
 twice: choose twice | probe.dbg has $VALUE 1 | frame.pixels as plain
 moved: press Tab, move 190 6, still, button left down, move 196 20, button left up | probe.dbg has $VALUE 1 | probe.dbg not as twice
+do cp plain.new live/d.glsl
 until shader.hash = $plain
 without: | probe.dbg = | frame.pixels as moved
 END
-    on_state() {
-        case $1 in
-        *'"at":"slid"'*) cp looks.new live/d.glsl ;;
-        *'"at":"moved"'*) cp plain.new live/d.glsl ;;
-        esac
-    }
-    follow "what values are" cube.json --size 320x240 --ui-scale 0.5 --shader live/d.glsl
 fi
 
 # ---- Widgets of sliders change the next picture without compiling ----
@@ -255,19 +240,18 @@ vec3 post(ivec2 at, vec3 color)
 END
     sed 's/ceil/floor/' own.new >other.new
     versions live/w.glsl own other
-    steps >"$OUT/replay" <<END
+    play "sliders" cube.json --size 320x240 --ui-scale 0.5 --shader live/w.glsl <<END
 start: press F2 x2, press X, press Tab, move 20 20 | error = | hud = off
 number: choose bands | render has bands= | frame.pixels not as start | picked = false
 opened: choose mode, wait 50, move 46 43, wait 50, move 46 42
 choice: choose warm | render has mode=warm | frame.pixels not as number | picked = false
 color: choose rim x2, char 70, char 48, char 56, char 48, char 49, char 48 | render has rim=#f08010 | frame.pixels not as choice
 same: choose bands | render as color | frame.pixels as color | picked = false
+do cp other.new live/w.glsl
 until shader.hash = $other
 saved: | error = | frame.pixels not as color
 subtracted: press U | compare.mode = difference | compare.other_ids = 0 | compare.other_colors > 100
 END
-    on_state() { case $1 in *'"at":"same"'*) cp other.new live/w.glsl ;; esac }
-    follow "sliders" cube.json --size 320x240 --ui-scale 0.5 --shader live/w.glsl
     for at in number choice color; do
         same frame.made start $at
         same frame.kernels start $at
@@ -283,21 +267,16 @@ if part 2 4; then
     printf '//@ slider k 0 1 0.5\nvec3 post(ivec2 at, vec3 color) { return color * k; }\n' >real/l.glsl
     ln -s ../real/l.glsl live/l.glsl
     printf '#include "new.glsl"\nvec3 post(ivec2 at, vec3 color) { return twice(color); }\n' >with.new
-    steps >"$OUT/replay" <<END
+    play "a new include" cube.json --size 320x240 --ui-scale 0.5 --shader live/l.glsl <<END
 start: press F2 x2, press Tab | error =
 moved: choose k | render has --set k=
+do cp with.new real/l.glsl
 until error
 lacks: | error has new.glsl | render has --set k=
+do echo 'vec3 twice(vec3 c) { return 2.0 * c; }' >live/new.glsl
 until error = $NONE
 mended: | frame.pixels not as start
 END
-    on_state() {
-        case $1 in
-        *'"at":"moved"'*) cp with.new real/l.glsl ;;
-        *'"at":"lacks"'*) echo 'vec3 twice(vec3 c) { return 2.0 * c; }' >live/new.glsl ;;
-        esac
-    }
-    follow "a new include" cube.json --size 320x240 --ui-scale 0.5 --shader live/l.glsl
     check "a slider that is gone is not named" test "$(value mended render | grep -c -e --set)" -eq 0
 fi
 
@@ -311,50 +290,40 @@ if part 1 4; then
     bomb >bomb.new
     for version in gbr grb rrr; do post "    return color.$version;" >$version.new; done
     versions live/h.glsl good gbr grb rrr
-    steps >"$OUT/replay" <<END
+    play "saves that mean harm" cube.json --size 96x64 --shader live/h.glsl <<END
 start: | error =
+do cp endless.new live/h.glsl
 until shader.refused = 1
 endless: | error has live/h.glsl:3: | error has fuel | frame.pixels as start
+do cp nan.new live/h.glsl
 until shader.refused = 2
 nan: | error has not finite: in | error has h.glsl has functions of this picture | frame.pixels as start
+do cp deep.new live/h.glsl
 until shader.refused = 3
 deep: | error has live/h.glsl: | error has too deep | frame.pixels as start
+do cp bomb.new live/h.glsl
 until shader.refused = 4
 bomb: | error has live/h.glsl: | frame.pixels as start
+do put gbr.new live/h.glsl
 until shader.hash = $gbr
 renamed: | error = | frame.pixels not as start | frame.ids as start
+do put grb.new live/h.glsl && put rrr.new live/h.glsl
 until shader.hash = $rrr
 twice: | error = | frame.pixels not as renamed | frame.ids as start
 END
-    on_state() {
-        case $1 in
-        *'"at":"start"'*) cp endless.new live/h.glsl ;;
-        *'"at":"endless"'*) cp nan.new live/h.glsl ;;
-        *'"at":"nan"'*) cp deep.new live/h.glsl ;;
-        *'"at":"deep"'*) cp bomb.new live/h.glsl ;;
-        *'"at":"bomb"'*) put gbr.new live/h.glsl ;;
-        *'"at":"renamed"'*) put grb.new live/h.glsl && put rrr.new live/h.glsl ;;
-        esac
-    }
-    follow "saves that mean harm" cube.json --size 96x64 --shader live/h.glsl
     check "the compiler's two errors are told once each" test "$(grep -c 'error: live/h.glsl' "$OUT/stderr")" -eq 2
     # A save that ends the measurement of the one before leaves its line.
     versions live/h.glsl good gbr grb
-    steps >"$OUT/replay" <<END
+    play "saves in a row" cube.json --size 96x64 --shader live/h.glsl <<END
 start: | error =
+do put gbr.new live/h.glsl
 until shader.whole = 1
 first! | shader.hash = $gbr
+do put grb.new live/h.glsl
 until shader.hash = $grb
 until shader.changed
 second: | shader.whole = 2
 END
-    on_state() {
-        case $1 in
-        *'"at":"start"'*) put gbr.new live/h.glsl ;;
-        *'"at":"first"'*) put grb.new live/h.glsl ;;
-        esac
-    }
-    follow "saves in a row" cube.json --size 96x64 --shader live/h.glsl
     check "a line for each" test "$(grep -c 'note: h.glsl: ' "$OUT/stderr")" -eq 2
 fi
 
@@ -375,29 +344,22 @@ if part 3 4; then
     bomb >long.new # to compile
     for version in rgb gbr brg; do post "    return color.$version;" >$version.new; done
     versions live/k.glsl rgb gbr brg
-    steps >"$OUT/replay" <<END
+    play "a compiler that ends" cube.json --size 96x64 --shader live/k.glsl <<END
 start: | error = | shader.hash = $rgb
+do cp long.new live/k.glsl && end_compiler KILL
 until error
 killed: | error has live/k.glsl: the compiler was killed (signal 9) | frame.pixels as start | shader.hash = $rgb
+do cp gbr.new live/k.glsl
 until shader.hash = $gbr
 mended: | error = | frame.pixels not as start
+do cp long.new live/k.glsl && end_compiler SEGV
 until error
 crashed: | error has live/k.glsl: the compiler crashed on it (signal 11) | frame.pixels as mended | shader.hash = $gbr
+do check "the process that is kept can be ended" kill -s KILL "\$(kept)"
+do cp brg.new live/k.glsl
 until shader.hash = $brg
 again: | error = | frame.pixels not as mended | frame.ids as start
 END
-    on_state() {
-        case $1 in
-        *'"at":"start"'*) cp long.new live/k.glsl && end_compiler KILL ;;
-        *'"at":"killed"'*) cp gbr.new live/k.glsl ;;
-        *'"at":"mended"'*) cp long.new live/k.glsl && end_compiler SEGV ;;
-        *'"at":"crashed"'*)
-            check "the process that is kept can be ended" kill -s KILL "$(kept)"
-            cp brg.new live/k.glsl
-            ;;
-        esac
-    }
-    follow "a compiler that ends" cube.json --size 96x64 --shader live/k.glsl
     check "the terminal says both" test "$(grep -c 'error: live/k.glsl: ' "$OUT/stderr")" -eq 2
     check "and no more" test "$(grep -c error: "$OUT/stderr")" -eq 2
 fi
