@@ -113,12 +113,13 @@ void camera_fly(struct view_camera *camera, double right, double up, double forw
 void camera_zoom(struct view_camera *camera, double factor)
 {
     double eye[3];
-    for (int i = 0; i < 3; ++i)
+    bool apart = false, finite = true;
+    for (int i = 0; i < 3; ++i) {
         eye[i] = camera->target[i] + factor * (camera->eye[i] - camera->target[i]);
-    bool apart = false;
-    for (int i = 0; i < 3; ++i)
         apart = apart || (float)eye[i] != (float)camera->target[i];
-    if (apart && factor > 0.0)
+        finite = finite && isfinite((float)eye[i]);
+    }
+    if (apart && finite && factor > 0.0)
         memcpy(camera->eye, eye, sizeof eye);
 }
 

@@ -30,7 +30,8 @@ void camera_orbit(struct view_camera *camera, double right, double up);
 void camera_turn(struct view_camera *camera, double right, double up);
 /* Moves eye and target, by multiples of the distance between them. */
 void camera_fly(struct view_camera *camera, double right, double up, double forward);
-/* Multiplies the distance to the target by a factor: 0.5 halves it. It never becomes 0. */
+/* Multiplies the distance to the target by a factor: 0.5 halves it. It never becomes 0, nor too
+   large for a float. */
 void camera_zoom(struct view_camera *camera, double factor);
 /* Makes `point` the target, seen from the same direction and distance. */
 void camera_focus(struct view_camera *camera, const double point[3]);

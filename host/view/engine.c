@@ -348,12 +348,15 @@ static void probe_one(struct engine *engine)
     pthread_mutex_lock(&engine->lock);
     engine->busy = false;
     engine->drawing = NULL;
+    if (result == WHIT_ERROR_CANCELLED) { /* again, with the next picture */
+        engine->probe_wanted = true;
+        engine_probe_finish(&probe);
+        return;
+    }
     probe.number = ++engine->probes;
     engine_probe_finish(&engine->probe);
     engine->probe = probe;
-    if (result == WHIT_ERROR_CANCELLED)
-        engine->probe_wanted = true; /* again, with the next picture */
-    else if (result == WHIT_ERROR_DEVICE)
+    if (result == WHIT_ERROR_DEVICE)
         engine_lose_device(engine, session);
     else if (result != WHIT_OK)
         say_failure(engine, result);

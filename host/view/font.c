@@ -1,4 +1,4 @@
-#include "view/font.h"
+#include "view/ui.h"
 
 #include <fontconfig/fontconfig.h>
 #include <stdio.h>

@@ -103,9 +103,7 @@ static void draw_shares(const struct engine_frame *frame, uint32_t stage)
             continue;
         whit_material_info material;
         whit_scene_get_material(frame->scene->scene, share->material, &material);
-        char name[64];
-        whit_text_show(material.name, name, sizeof name);
-        ui_text_dim("    %.0f %% of its hits: %s", 100.0 * share->share, name);
+        ui_text_dim("    %.0f %% of its hits: %.60s", 100.0 * share->share, material.name);
         ++shown;
     }
 }
@@ -332,7 +330,7 @@ static void draw_keys(const struct view *view)
     }
     if (!ui_table_begin("keys", groups * SHEET_CELLS))
         return;
-    ui_table_widths(widths, groups * SHEET_CELLS);
+    ui_table_columns(NULL, widths, groups * SHEET_CELLS);
     uint32_t high = (told + (uint32_t)groups - 1) / (uint32_t)groups;
     for (uint32_t i = 0; i < high; ++i) {
         for (uint32_t at = i; at < high * (uint32_t)groups; at += high)
@@ -357,7 +355,7 @@ static void draw_help(struct view *view)
         return;
     if (ui_panel_begin("Keys", 0.5f, 0.0f, UI_PANEL_HOLD)) {
         if (ui_table_begin("mouse", 2)) {
-            ui_table_widths(widths, 2);
+            ui_table_columns(NULL, widths, 2);
             for (size_t i = 0; i < sizeof mouse / sizeof *mouse; ++i) {
                 ui_cell(UI_COLOR_GOOD, mouse[i][0]);
                 ui_cell(UI_COLOR_TEXT, mouse[i][1]);

@@ -5,12 +5,10 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "base/input.h"
 #include "view/choices.h"
 #include "view/keys.h"
 #include "view/pick.h"
 #include "view/price_panel.h"
-#include "view/scene_folder.h"
 #include "view/scenes.h"
 #include "view/view_private.h"
 
@@ -269,17 +267,6 @@ static void say_speed(const struct view *view, char *text, size_t bytes)
 
 /* ---- Files ---- */
 
-static void turn_scene(struct view *view, int by)
-{
-    char path[SETTING_PATH_BYTES];
-    /* From the scene that was asked for last, so that one that cannot be loaded is passed. */
-    const char *from = view->asked[0] ? view->asked : view->settings.scene;
-    if (!is_input(from) && scene_folder_find(from, by, path, sizeof path))
-        view_open(view, path);
-    else
-        view_say(view, "no other scene beside this one");
-}
-
 static void say_scene(const struct view *view, char *text, size_t bytes)
 {
     snprintf(text, bytes, "%s", path_name(view->settings.scene));
@@ -303,7 +290,7 @@ static void save_picture(struct view *view)
                                    .shader = frame->shader ? frame->shader->shader : NULL,
                                    .device = &frame->device,
                                    .stats = frame->refined ? &frame->all : &frame->stats};
-    if (view->params->save && view->params->save(view->params->save_user, &shot, path) == WHIT_OK)
+    if (view->params->save(&shot, path) == WHIT_OK)
         view_say(view, "saved as %s", path);
     else
         view_say(view, "%s could not be saved", path);
@@ -311,9 +298,8 @@ static void save_picture(struct view *view)
 
 static void copy_line(struct view *view)
 {
-    char line[2048];
-    const struct settings drawn = view_drawn(view, scenes_shown(view));
-    settings_write_render(&drawn, SETTINGS_LINE, "picture.png", line, sizeof line);
+    char line[VIEW_LINE];
+    view_line(view, line);
     window_copy(view->window, line);
     view_say(view, "copied: %s", line);
 }
@@ -418,9 +404,9 @@ static const struct key_binding bindings[] = {
      .group = KEYS_FILES},
     {'S', EVENT_CTRL, "Ctrl+S", "save settings", "save these settings", panels_save,
      .group = KEYS_FILES},
-    {KEY_LEFT, 0, "Left Right", "other scenes", "scene before", .turn = turn_scene, .by = -1,
+    {KEY_LEFT, 0, "Left Right", "other scenes", "scene before", .turn = scenes_turn, .by = -1,
      .state = say_scene, .group = KEYS_FILES},
-    {KEY_RIGHT, 0, NULL, NULL, "scene after", .turn = turn_scene, .by = 1, .state = say_scene,
+    {KEY_RIGHT, 0, NULL, NULL, "scene after", .turn = scenes_turn, .by = 1, .state = say_scene,
      .group = KEYS_FILES},
     {'R', 0, "R", "read it again", "read the scene again", scenes_read_again, .group = KEYS_FILES},
     {'H', 0, "H F1", NULL, "this list", switch_help, .group = KEYS_FILES},

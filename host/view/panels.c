@@ -1,6 +1,6 @@
 #include "view/panels.h"
 
-#include <math.h>
+#include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,15 +17,10 @@ static const double FPS_MIN = 1.0, FPS_MAX = 240.0;
 
 /* ---- Files of settings ---- */
 
-static void name_file(int number, const char *extension, char name[VIEW_FREE_NAME])
-{
-    snprintf(name, VIEW_FREE_NAME, "whit-%04d.%.8s", number, extension);
-}
-
 void view_free_name(const char *extension, char name[VIEW_FREE_NAME])
 {
     for (int i = 1; i <= NAMES_LAST; ++i) {
-        name_file(i, extension, name);
+        snprintf(name, VIEW_FREE_NAME, "whit-%04d.%.8s", i, extension);
         if (!file_exists(name))
             return;
     }
@@ -33,15 +28,14 @@ void view_free_name(const char *extension, char name[VIEW_FREE_NAME])
 
 static void list_states(struct panels *panels)
 {
-    char name[VIEW_FREE_NAME];
-    int last = 0;
+    glob_t found = {0};
+    (void)glob("whit-[0-9][0-9][0-9][0-9].view", 0, NULL, &found);
     panels->state_count = 0;
     panels->states_known = true;
-    for (name_file(1, "view", name); last < NAMES_LAST && file_exists(name);
-         name_file(last + 1, "view", name))
-        ++last;
-    for (int i = last; i > 0 && panels->state_count < STATES_MAX; --i)
-        name_file(i, "view", panels->states[panels->state_count++]);
+    for (size_t i = found.gl_pathc; i > 0 && panels->state_count < STATES_MAX; --i)
+        snprintf(panels->states[panels->state_count++], VIEW_FREE_NAME, "%s",
+                 found.gl_pathv[i - 1]);
+    globfree(&found);
 }
 
 static whit_result write_state(const struct view *view, const char *path)
@@ -81,9 +75,8 @@ void panels_load(struct view *view, const char *path)
 {
     struct settings loaded = view->settings;
     const struct view_params *params = view->params;
-    char message[TOAST_BYTES] = "files of settings cannot be read here";
-    if (!params->load_state ||
-        params->load_state(params->load_user, path, &loaded, message, sizeof message) != WHIT_OK) {
+    char message[TOAST_BYTES];
+    if (params->load_state(params->load_user, path, &loaded, message, sizeof message) != WHIT_OK) {
         view_say(view, "%s", message);
         return;
     }
@@ -328,7 +321,7 @@ static void draw_effects(struct view *view)
         int columns = say_reasons() ? 3 : 2, room = ui_characters(columns) - EFFECT_CHARACTERS;
         const int widths[3] = {0, 0, room < REASON_CHARACTERS ? room : REASON_CHARACTERS};
         if (ui_table_begin("effects", columns)) {
-            ui_table_header(titles, widths, columns);
+            ui_table_columns(titles, widths, columns);
             for (uint32_t i = 0; i < EFFECTS_MAX && whit_effect_name(i); ++i)
                 draw_effect(view, i);
             ui_table_end();

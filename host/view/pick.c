@@ -330,7 +330,7 @@ static void draw_tree(const struct view *view)
     int widths[RAY_COLUMNS];
     choose_widths(view, shown, widths);
     if (ui_table_begin("rays", RAY_COLUMNS)) {
-        ui_table_header(ray_columns, widths, RAY_COLUMNS);
+        ui_table_columns(ray_columns, widths, RAY_COLUMNS);
         for (uint32_t i = 0; i < shown; ++i) {
             struct ray_row row;
             write_row(view, &probe->rows[i], &row);
@@ -445,8 +445,8 @@ static void mark_pixel(const struct view *view)
     if (has_moved_on(view))
         return;
     ui_keep_free(x, y, 8.0f);
-    ui_rectangle(x - 5.0f, y - 5.0f, x + 5.0f, y + 5.0f, 0xFF000000u, false);
-    ui_rectangle(x - 4.0f, y - 4.0f, x + 4.0f, y + 4.0f, 0xFFFFFFFFu, false);
+    ui_rectangle(x - 5.0f, y - 5.0f, x + 5.0f, y + 5.0f, 0xFF000000u);
+    ui_rectangle(x - 4.0f, y - 4.0f, x + 4.0f, y + 4.0f, 0xFFFFFFFFu);
 }
 
 void pick_draw(struct view *view)

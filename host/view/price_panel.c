@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "view/price_panel.h"
-#include "view/price_plot.h"
 #include "view/prices.h"
 #include "view/view_private.h"
 
@@ -161,7 +160,7 @@ static void draw_table(struct view *view, const struct cost_report *report)
             ++end;
         if (!begin_knob(report, i, end) || !ui_table_begin(knob, 4))
             continue;
-        ui_table_widths(widths, 4);
+        ui_table_columns(NULL, widths, 4);
         for (uint32_t k = i; k < end; ++k)
             draw_row(view, report, &report->rows[k], k);
         ui_table_end();

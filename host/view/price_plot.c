@@ -1,11 +1,10 @@
-#include "view/price_plot.h"
+#include "view/price_strip.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "view/price_strip.h"
 #include "view/ui.h"
 
 enum { ABOUT = 160 };

@@ -85,7 +85,7 @@ void price_strip_draw(const struct price_strip *strip, const struct cost_report 
 {
     static const int widths[COST_STRIP] = {13, 13, 13, 13};
     if (ui_table_begin("strip", COST_STRIP)) {
-        ui_table_widths(widths, COST_STRIP);
+        ui_table_columns(NULL, widths, COST_STRIP);
         for (uint32_t i = 0; i < COST_STRIP; ++i) {
             ui_table_next();
             draw_share(strip, i, report);

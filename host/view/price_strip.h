@@ -18,5 +18,8 @@ void price_strip_finish(struct price_strip *strip);
 void price_strip_name(const struct price_strip *strip, const struct cost_report *report,
                       const struct cost_row *row, char name[COST_NAME]);
 void price_strip_draw(const struct price_strip *strip, const struct cost_report *report);
+/* price_plot.c: draws error over time, a point for each row that the reference can judge. Rows that
+   no other row beats in both are joined by a line; these and the usual row have names. */
+void price_plot_draw(const struct cost_report *report, const struct price_strip *strip);
 
 #endif

@@ -74,16 +74,11 @@ static void forget_old(json_t *all)
 
 static void save(const whit_log *log, const char *path, const json_t *all)
 {
-    struct file_write file = {0};
+    const whit_log silence = log_or_silence(NULL);
     char *text = json_dumps(all, JSON_INDENT(1));
-    if (!text || file_write_begin(log, path, &file) != WHIT_OK) {
-        free(text);
-        return;
-    }
-    fputs(text, file.stream);
+    if (!text || file_write_whole(&silence, path, text, strlen(text)) != WHIT_OK)
+        log_warning(log, "%s: cannot be written: the camera is not remembered", path);
     free(text);
-    if (file_write_commit(log, &file) != WHIT_OK)
-        log_warning(log, "%s: cameras are not remembered", path);
 }
 
 void memory_keep(const whit_log *log, const char *scene, const char *camera)

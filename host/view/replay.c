@@ -42,15 +42,17 @@ whit_result replay_open(struct view *view)
     return events_load(&view->log, params->replay, &view->replay->list);
 }
 
-void replay_close(struct view *view)
+whit_result replay_close(struct view *view)
 {
     if (view->replay)
         events_finish(&view->replay->list);
     free(view->replay);
-    view->replay = NULL;
+    bool lost = view->record && ferror(view->record);
     if (view->record && fclose(view->record) != 0)
+        lost = true;
+    if (lost)
         log_error(&view->log, "%s: cannot be written", view->params->record);
-    view->record = NULL;
+    return lost ? WHIT_ERROR_OUTPUT : WHIT_OK;
 }
 
 bool replay_is_over(const struct view *view)

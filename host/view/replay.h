@@ -12,7 +12,8 @@ void replay_step(struct view *view);
 /* Seconds until the next event is due; HUGE_VAL: there is none. */
 double replay_wait_s(struct view *view);
 bool replay_is_over(const struct view *view);
-void replay_close(struct view *view);
+/* WHIT_ERROR_OUTPUT, logged: not all events could be recorded. */
+WHIT_CHECK whit_result replay_close(struct view *view);
 void record_event(struct view *view, const struct view_event *event);
 
 #endif

@@ -2,8 +2,10 @@
 
    If a request for a scene fails, the scene that is shown stays, and everything that the user does
    is about that one. */
+#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -228,6 +230,61 @@ const struct settings *scenes_shown(const struct view *view)
 {
     return settings_same_scene(&view->settings, &view->fallback) ? &view->settings
                                                                  : &view->fallback;
+}
+
+/* ---- Scenes beside it ---- */
+
+static int is_scene(const struct dirent *entry)
+{
+    static const char *const endings[] = {"json", "obj", "gltf", "glb", "ply",
+                                          "stl",  "fbx", "dae",  "3mf", "off"};
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; ++i) {
+        if (path_is(entry->d_name, endings[i]))
+            return entry->d_name[0] != '.';
+    }
+    return 0;
+}
+
+static int compare_names(const struct dirent **a, const struct dirent **b)
+{
+    return strcmp((*a)->d_name, (*b)->d_name);
+}
+
+/* Finds the scene that stands `by` places behind `path` in its folder, by name; behind the last one
+   comes the first. A path that is not there any more counts as standing before the first. False:
+   the folder has no other scene. */
+static bool find_beside(const char *path, int by, char *found, size_t found_bytes)
+{
+    const char *name = path_name(path);
+    int folder_bytes = (int)(name - path), own = by > 0 ? -1 : 0;
+    struct dirent **entries = NULL;
+    snprintf(found, found_bytes, "%.*s", folder_bytes, path);
+    int count = scandir(found[0] ? found : ".", &entries, is_scene, compare_names);
+    for (int i = 0; i < count; ++i) {
+        if (strcmp(entries[i]->d_name, name) == 0)
+            own = i;
+    }
+    bool any = count > 0;
+    if (any) {
+        const char *next = entries[(own + count + by) % count]->d_name;
+        any = strcmp(next, name) != 0;
+        snprintf(found, found_bytes, "%.*s%s", folder_bytes, path, next);
+    }
+    for (int i = 0; i < count; ++i)
+        free(entries[i]);
+    free(entries);
+    return any;
+}
+
+void scenes_turn(struct view *view, int by)
+{
+    char path[SETTING_PATH_BYTES];
+    /* From the scene that was asked for last, so that one that cannot be loaded is passed. */
+    const char *from = view->asked[0] ? view->asked : view->settings.scene;
+    if (!is_input(from) && find_beside(from, by, path, sizeof path))
+        view_open(view, path);
+    else
+        view_say(view, "no other scene beside this one");
 }
 
 /* ---- Files ---- */

@@ -9,6 +9,8 @@ struct view;
 /* Opens another scene, such as a file dropped on the window. Other settings than camera and time
    stay; animations stop. */
 void view_open(struct view *view, const char *path);
+/* Opens the scene that stands `by` places behind this one in its folder. */
+void scenes_turn(struct view *view, int by);
 void scenes_begin(struct view *view);
 void scenes_end(struct view *view);
 /* Call it when a new picture is the first of another scene. */

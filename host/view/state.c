@@ -347,13 +347,12 @@ static json_t *memory_json(void)
 /* The whole state; the caller calls json_decref. */
 static json_t *state_json(struct view *view, const char *name)
 {
-    char words[4096], line[4096], quality[HUD_QUALITY_BYTES];
+    char words[4096], line[VIEW_LINE], quality[HUD_QUALITY_BYTES];
     struct swapchain_info chain;
     json_t *root = json_object();
     put_text(root, "at", name);
     settings_write(&view->settings, SETTINGS_STATE, " ", words, sizeof words);
-    const struct settings drawn = view_drawn(view, scenes_shown(view));
-    settings_write_render(&drawn, SETTINGS_LINE, "picture.png", line, sizeof line);
+    view_line(view, line);
     swapchain_get_info(view->swapchain, &chain);
     put_text(root, "scene", view->settings.scene);
     put_text(root, "words", words);

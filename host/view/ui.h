@@ -26,6 +26,9 @@ struct ui;
    file, read during this call only; NULL: Dear ImGui's own font. Errors are logged. */
 WHIT_CHECK whit_result ui_create(struct swapchain *swapchain, float scale, const uint8_t *font,
                                  size_t font_bytes, struct ui **out);
+/* font.c: finds a monospaced font of this system by fontconfig. *data: a TrueType file; free() it.
+   False: there is none. */
+bool font_load(uint8_t **data, size_t *size_bytes);
 void ui_destroy(struct ui *ui); /* call it before destroying the swapchain; NULL is fine */
 
 /* Input of the user since the last frame. Keys are those of view_event. */
@@ -85,7 +88,8 @@ void ui_panel_end(void);
    beside it. */
 void ui_keep_free(float x, float y, float radius);
 
-/* Texts go through whit_text_show, so each is one line; labels and titles are whit's own. */
+/* Texts, and the names of ui_choice, go through whit_text_show, so each is one line; labels and
+   titles are whit's own. */
 void ui_text(const char *format, ...) WHIT_PRINTF(1, 2);
 void ui_paragraph(const char *text); /* wrapped at the end of the window */
 void ui_text_dim(const char *format, ...) WHIT_PRINTF(1, 2);
@@ -139,22 +143,21 @@ void ui_picture(const uint32_t *rgba, uint32_t width, uint32_t height, const cha
                 uint32_t line_count);
 void ui_progress(float part, const char *text); /* part < 0: not known */
 bool ui_table_begin(const char *id, int columns);
-/* Sets the widths of columns, instead of a header; ui_cell wraps longer text. */
-void ui_table_widths(const int *characters, int count);
+/* Sets the widths of columns in characters, 0: as wide as their texts; ui_cell wraps longer text.
+   `heads`: a header; NULL: none. */
+void ui_table_columns(const char *const *heads, const int *characters, int count);
 void ui_cell(uint32_t color, const char *text); /* ui_table_next and a text */
 /* Number of characters that fit into a table of `columns` columns that is as wide as the window
    allows. */
 int ui_characters(int columns);
 /* The same for the panel or window as it is, whose width its content does not change. */
 int ui_characters_here(int columns);
-/* `characters`: the widths of the columns, 0: as wide as their texts; NULL: all so. */
-void ui_table_header(const char *const *names, const int *characters, int count);
 void ui_table_next(void); /* cell */
 void ui_table_end(void);
 
 /* Drawn over the picture, under the panels. Text as above. */
 void ui_line(float x0, float y0, float x1, float y1, uint32_t color, float width);
-void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color, bool filled);
+void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color);
 void ui_text_size(const char *text, float *width, float *height);
 
 #ifdef __cplusplus

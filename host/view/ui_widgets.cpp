@@ -22,13 +22,20 @@ static const char *shown_format(const char *format, va_list args)
     return shown(text);
 }
 
+static void put_text(ImU32 color, const char *text)
+{
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::TextUnformatted(text);
+    ImGui::PopStyleColor();
+}
+
 extern "C" {
 
 void ui_text(const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    ImGui::TextUnformatted(shown_format(format, args));
+    put_text(UI_COLOR_TEXT, shown_format(format, args));
     va_end(args);
 }
 
@@ -43,7 +50,7 @@ void ui_text_dim(const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    ImGui::TextDisabled("%s", shown_format(format, args));
+    put_text(UI_COLOR_DIM, shown_format(format, args));
     va_end(args);
 }
 
@@ -51,9 +58,7 @@ void ui_text_color(uint32_t color, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::TextUnformatted(shown_format(format, args));
-    ImGui::PopStyleColor();
+    put_text(color, shown_format(format, args));
     va_end(args);
 }
 
@@ -67,19 +72,15 @@ void ui_text_beside(uint32_t color, const char *format, ...)
                 ImGui::GetStyle().ItemSpacing.x + ImGui::CalcTextSize(text).x;
     if (end <= panel_width() - ImGui::GetStyle().WindowPadding.x)
         ImGui::SameLine();
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::TextUnformatted(text);
-    ImGui::PopStyleColor();
+    put_text(color, text);
 }
 
 void ui_cell(uint32_t color, const char *text)
 {
     ImGui::TableNextColumn();
-    ImGui::PushStyleColor(ImGuiCol_Text, color);
     ImGui::PushTextWrapPos(0.0f); // wraps at the cell's right side
-    ImGui::TextUnformatted(shown(text));
+    put_text(color, shown(text));
     ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
 }
 
 void ui_separator(void)
@@ -128,10 +129,12 @@ bool ui_choice(const char *label, const char *preview, const char *const *names,
     if (open && note_menu())
         ImGui::CloseCurrentPopup();
     for (int i = 0; open && i < count; ++i) {
-        if (ui_selectable(names[i], i == *value)) {
+        ImGui::PushID(i); // two files may have the same name
+        if (ui_selectable(shown(names[i]), i == *value)) {
             *value = i;
             chosen = true;
         }
+        ImGui::PopID();
     }
     if (open)
         ImGui::EndCombo();
@@ -218,22 +221,17 @@ int ui_characters_here(int columns)
     return characters_in(ImGui::GetContentRegionAvail().x, columns);
 }
 
-void ui_table_widths(const int *characters, int count)
-{
-    for (int i = 0; i < count; ++i)
-        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed,
-                                (float)characters[i] * character_width() + 1.0f);
-}
-
-void ui_table_header(const char *const *names, const int *characters, int count)
+void ui_table_columns(const char *const *heads, const int *characters, int count)
 {
     for (int i = 0; i < count; ++i) {
-        bool fixed = characters && characters[i] > 0;
-        ImGui::TableSetupColumn(
-            names[i], fixed ? ImGuiTableColumnFlags_WidthFixed : ImGuiTableColumnFlags_None,
-            fixed ? (float)characters[i] * character_width() + 1.0f : 0.0f);
+        bool fixed = !heads || characters[i] > 0;
+        ImGui::TableSetupColumn(heads ? heads[i] : "",
+                                fixed ? ImGuiTableColumnFlags_WidthFixed
+                                      : ImGuiTableColumnFlags_None,
+                                fixed ? (float)characters[i] * character_width() + 1.0f : 0.0f);
     }
-    ImGui::TableHeadersRow();
+    if (heads)
+        ImGui::TableHeadersRow();
 }
 
 void ui_table_next(void)
@@ -251,13 +249,9 @@ void ui_line(float x0, float y0, float x1, float y1, uint32_t color, float width
                                             width * line_scale);
 }
 
-void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color, bool filled)
+void ui_rectangle(float x0, float y0, float x1, float y1, uint32_t color)
 {
-    ImDrawList *list = ImGui::GetBackgroundDrawList();
-    if (filled)
-        list->AddRectFilled(ImVec2(x0, y0), ImVec2(x1, y1), color);
-    else
-        list->AddRect(ImVec2(x0, y0), ImVec2(x1, y1), color);
+    ImGui::GetBackgroundDrawList()->AddRect(ImVec2(x0, y0), ImVec2(x1, y1), color);
 }
 
 void ui_text_size(const char *text, float *width, float *height)

@@ -8,7 +8,6 @@
 #include "base/clock.h"
 #include "base/platform.h"
 #include "kernels.h"
-#include "view/font.h"
 #include "view/pick.h"
 #include "view/price_panel.h"
 #include "view/prices.h"
@@ -106,6 +105,12 @@ struct settings view_drawn(const struct view *view, const struct settings *setti
     if (view->frame.refined && settings_same(&view->frame.settings, settings))
         drawn.picture.sampling.count = view->frame.samples;
     return drawn;
+}
+
+void view_line(const struct view *view, char line[VIEW_LINE])
+{
+    const struct settings drawn = view_drawn(view, scenes_shown(view));
+    settings_write_render(&drawn, SETTINGS_LINE, "picture.png", line, VIEW_LINE);
 }
 
 /* Replaces `auto` in the settings by the exposure and the camera that were chosen for it. */
@@ -460,11 +465,12 @@ static whit_result open_all(struct view *view)
     return result;
 }
 
-static void close_all(struct view *view, uint32_t *validation)
+/* Gives `result`, or where it is fine an error of the record. */
+static whit_result close_all(struct view *view, whit_result result, uint32_t *validation)
 {
     scenes_end(view);
     shaders_end(view);
-    replay_close(view);
+    whit_result recorded = replay_close(view);
     prices_stop(view->prices);
     prices_stop(view->panels.measured);
     for (uint32_t i = 0; i < LEAVING_MAX; ++i)
@@ -480,6 +486,7 @@ static void close_all(struct view *view, uint32_t *validation)
     *validation += view->device ? device_validation_messages(view->device) : 0;
     device_destroy(view->device);
     window_destroy(view->window);
+    return result == WHIT_OK ? recorded : result;
 }
 
 whit_result view_run(const struct view_params *params, const whit_log *log, uint32_t *validation)
@@ -504,7 +511,7 @@ whit_result view_run(const struct view_params *params, const whit_log *log, uint
     whit_result result = open_all(view);
     while (result == WHIT_OK && !is_over(view))
         result = step(view);
-    close_all(view, validation);
+    result = close_all(view, result, validation);
     free(view);
     return result;
 }

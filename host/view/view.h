@@ -22,7 +22,7 @@ struct view_params {
     double spend_s; /* time for measuring costs, roughly; 0: a default */
     bool fresh;     /* --budget-ms and --max-error do not use figures of earlier runs */
     /* Figures for these two options, and the choices made by them, kept from one run to the next.
-       load: false if there are none; *figures is then unchanged. NULL: nothing is kept. */
+       load: false if there are none; *figures is then unchanged. */
     bool (*load_figures)(const struct cost_place *place, struct cost_kept_figures *figures);
     void (*save_figures)(const struct cost_place *place, const struct cost_kept_figures *figures);
     uint32_t frames;    /* number of pictures to show; 0: until the window is closed */
@@ -32,10 +32,9 @@ struct view_params {
     bool remember;      /* remember cameras from one run to the next */
     const volatile bool *cancel;
     /* Saves a picture; logs the reason of an error. */
-    whit_result (*save)(void *user, const struct view_shot *shot, const char *path);
-    void *save_user;
+    whit_result (*save)(const struct view_shot *shot, const char *path);
     /* Reads a file of settings; scene and files of *settings stay. `message` gets the reason of an
-       error, with file and line. May be NULL. */
+       error, with file and line. */
     whit_result (*load_state)(void *user, const char *path, struct settings *settings,
                               char *message, size_t message_bytes);
     void *load_user;

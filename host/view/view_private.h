@@ -129,6 +129,10 @@ void view_say(struct view *view, const char *format, ...) WHIT_PRINTF(2, 3);
 void view_moved(struct view *view);
 /* Gives `settings`, with the number of samples of the shown picture if that is refined. */
 struct settings view_drawn(const struct view *view, const struct settings *settings);
+/* Writes the `whit render` line that makes the shown picture. VIEW_LINE has room for the longest
+   paths, each byte of them quoted as \xNN. */
+enum { VIEW_LINE = 1 << 16 };
+void view_line(const struct view *view, char line[VIEW_LINE]);
 /* Whether quick pictures are wanted, since something moves. */
 bool view_is_moving(const struct view *view);
 /* When quick pictures end if nothing is moved any more, by view_now_ms. */

@@ -106,8 +106,7 @@ static void save(const struct view *view)
     bool found = figures->choice.found;
     figures->choice.found = found && params->settings.budget_ms > 0.0 && wish->stage == WISH_CHOSEN;
     figures->choice_ms = wish->took_ms;
-    if (params->save_figures)
-        params->save_figures(&place, figures);
+    params->save_figures(&place, figures);
     figures->choice.found = found;
 }
 
@@ -118,7 +117,7 @@ static bool choose_as_before(struct view *view)
     struct wish *wish = &view->wish;
     struct settings settings;
     const struct cost_place place = place_of(view, &settings);
-    if (wish->fresh || !params->load_figures || !params->load_figures(&place, wish->figures))
+    if (wish->fresh || !params->load_figures(&place, wish->figures))
         return false;
     wish->known = wish->figures->choice.found;
     if (wish->known)

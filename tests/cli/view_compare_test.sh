@@ -152,6 +152,10 @@ END
     same frame.pixels saved dropped
     check "the message has file and line ($(value bad toast))" \
         test "$(value bad toast | grep -c '^bad.view:1: --numerics `exactly`: one of')" -eq 1
+    rm whit-0002.view
+    play "a gap in the numbers" "$SCENES/8k.json" --size 320x400 --ui-scale 0.5 <<END
+list: press Tab, still, choose files, still, choose whit-0003.view | toast = whit-0003.view: these settings
+END
     check "what was loaded is saved as it was" sh -c \
         "grep -v '^#' whit-0001.view >1 && grep -v '^#' whit-0003.view | cmp - 1"
     play "the command line has the last word" "$CUBE" --state whit-0001.view --traversal basic <<END

@@ -114,6 +114,19 @@ END
     same frame.ids plain sky
     check "the background is gone" test "$(value sky render | grep -c background)" -eq 0
     EXPECTED=
+    # Each of two skies with the same name can be chosen. `items` has the place of the second.
+    mkdir other
+    cp sky.exr other
+    for second in "0 0" items; do
+        [ "$second" != items ] || second=$(value open items.sky.exr)
+        play "two skies of a name" "$CUBE" --size 320x240 <<END
+first: drop other/sky.exr, press Tab | render has other/sky.exr
+open: drop sky.exr, still, choose environment
+chosen: choose sky.exr | render as first
+again: choose environment, still, click $second
+END
+    done
+    check "the second is chosen" test "$(value again render)" = "$(value open render)"
 fi
 
 if part 0 2; then
@@ -252,6 +265,19 @@ start: press F2 x2 | words = --size 96x64 --view visits --view-rays all --view-s
 END
 fi
 
+if part 0 2; then
+    # The line of Ctrl+C has all folders, however long their names are.
+    folders=
+    for name in a b c d e; do
+        long=$(printf "$name%.0s" $(seq 240))
+        mkdir -p "$long/$long/$long/$long"
+        folders="$folders --allow-path $PWD/$long/$long/$long/$long"
+    done
+    play "a long line" "$CUBE" $SMALL $folders <<END
+long: | render has $folders -o picture.png
+END
+fi
+
 if part 1 2; then
     # A file of settings begins with a line for a shell. Keys that come between two pictures are all counted.
     cp "$CUBE" "it's a cube.json"
@@ -277,4 +303,7 @@ for text in "jump" "until" "await" "choose" "clock" "clock false" "key T" "key T
 done
 refuse 2 "no replay" "nowhere.replay" view "$CUBE" --replay nowhere.replay
 refuse 2 "no place for a record" "nowhere/record" view "$CUBE" --record nowhere/record --frames 1
+refuse 2 "no room for a record" "/dev/full: cannot be written" view "$CUBE" $SMALL --record /dev/full --frames 1
+XDG_STATE_HOME=/proc/nowhere expect 0 "no place for cameras" view "$CUBE" $SMALL --frames 1
+check "no place for cameras: is a warning" test "$(sed 's/cameras.json.*//' "$OUT/stderr")" = "whit: warning: /proc/nowhere/whit/"
 finish

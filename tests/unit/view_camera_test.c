@@ -52,7 +52,7 @@ TEST(flying_is_by_the_distance)
     assert_near(c.eye[1], 1.0);
 }
 
-TEST(zoom_never_reaches_the_target)
+TEST(zoom_never_reaches_the_target_nor_infinity)
 {
     struct view_camera c = front();
     camera_zoom(&c, 0.5);
@@ -64,6 +64,10 @@ TEST(zoom_never_reaches_the_target)
     for (int i = 0; i < 5000; ++i)
         camera_zoom(&c, 0.5);
     assert_true((float)c.eye[2] != (float)c.target[2] || (float)c.eye[0] != (float)c.target[0]);
+    for (int i = 0; i < 5000; ++i)
+        camera_zoom(&c, 2.0);
+    camera_zoom(&c, INFINITY);
+    assert_true(isfinite((float)c.eye[2]) && c.eye[2] > 1e30);
 }
 
 /* All corners of the box are in the picture, whatever its shape. */

@@ -3,7 +3,6 @@
 #include "device/swapchain.h"
 #include "device_fixture.h"
 #include "unit.h"
-#include "view/font.h"
 #include "view/ui.h"
 #include "view/window.h"
 
@@ -74,7 +73,7 @@ static whit_result set_picture(struct shop *shop)
 static whit_result show_text(struct shop *shop, bool *shown)
 {
     assert_true(ui_begin(shop->ui, WIDTH, HEIGHT, 0.01));
-    ui_rectangle(1, 1, 9, 9, 0xFFFFFFFFu, true);
+    ui_rectangle(1, 1, 9, 9, 0xFFFFFFFFu);
     if (ui_panel_begin("text", 0, 0, UI_PANEL_STAYS))
         ui_text("text");
     ui_panel_end();

@@ -103,10 +103,9 @@ static whit_result load_state(void *user, const char *path, struct settings *set
 }
 
 /* view_params.save: the file that `whit render` would have written. */
-static whit_result save_shot(void *user, const struct view_shot *shot, const char *path)
+static whit_result save_shot(const struct view_shot *shot, const char *path)
 {
     struct recipe recipe;
-    (void)user;
     if (!recipe_init(&recipe, shot->settings, shot->scene, shot->shader, shot->device, shot->stats,
                      path, NULL))
         return WHIT_ERROR_MEMORY;
