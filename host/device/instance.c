@@ -310,18 +310,11 @@ const char *whit_device_kind_name(whit_device_kind kind)
 
 static whit_device_kind kind_of(VkPhysicalDeviceType type)
 {
-    switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-        return WHIT_DEVICE_DISCRETE;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-        return WHIT_DEVICE_INTEGRATED;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-        return WHIT_DEVICE_VIRTUAL;
-    case VK_PHYSICAL_DEVICE_TYPE_CPU:
-        return WHIT_DEVICE_CPU;
-    default:
-        return WHIT_DEVICE_OTHER;
-    }
+    return type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU     ? WHIT_DEVICE_DISCRETE
+           : type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU ? WHIT_DEVICE_INTEGRATED
+           : type == VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU    ? WHIT_DEVICE_VIRTUAL
+           : type == VK_PHYSICAL_DEVICE_TYPE_CPU            ? WHIT_DEVICE_CPU
+                                                            : WHIT_DEVICE_OTHER;
 }
 
 static uint64_t device_memory(VkPhysicalDevice physical)

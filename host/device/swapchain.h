@@ -46,16 +46,13 @@ void swapchain_get_info(const struct swapchain *swapchain, struct swapchain_info
    swapchain_get_handles. */
 typedef void (*swapchain_draw)(void *user, void *commands);
 
-/* Shows the picture with what `draw` (may be NULL) puts over it. *shown is false where the window
-   is 0 x 0 or changed meanwhile: then call swapchain_resize and show it again. Errors:
-   WHIT_ERROR_DEVICE for a lost device, WHIT_ERROR_MEMORY. */
+/* Shows the picture with what `draw` (may be NULL) puts over it. `keep`: keeps a copy of the window
+   for swapchain_read. *shown is false where the window is 0 x 0 or changed meanwhile: then call
+   swapchain_resize and show it again. Errors: WHIT_ERROR_DEVICE for a lost device,
+   WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result swapchain_show(struct swapchain *swapchain, swapchain_draw draw, void *user,
-                                      bool *shown);
-
-/* Does what swapchain_show does, and keeps a copy of the window for swapchain_read. */
-WHIT_CHECK whit_result swapchain_show_and_keep(struct swapchain *swapchain, swapchain_draw draw,
-                                               void *user, bool *shown);
-/* Reads what swapchain_show_and_keep showed, overlay included, as RGBA bytes: width * height * 4 of
+                                      bool keep, bool *shown);
+/* Reads what swapchain_show showed and kept, overlay included, as RGBA bytes: width * height * 4 of
    them. `rgba` has room for `bytes`. WHIT_ERROR_USAGE where nothing was kept. */
 WHIT_CHECK whit_result swapchain_read(struct swapchain *swapchain, uint8_t *rgba, size_t bytes);
 

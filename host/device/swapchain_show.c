@@ -245,13 +245,13 @@ static whit_result present(struct swapchain *swapchain, uint32_t index, bool *sh
     return window_result(swapchain, vk, "vkQueuePresentKHR", shown);
 }
 
-static whit_result show(struct swapchain *swapchain, swapchain_draw draw, void *user, bool capture,
-                        bool *shown)
+whit_result swapchain_show(struct swapchain *swapchain, swapchain_draw draw, void *user, bool keep,
+                           bool *shown)
 {
     double start_ms = clock_ms();
     bool usable = false;
     uint32_t index = 0;
-    *shown = false;
+    *shown = swapchain->captured = false;
     whit_result result = swapchain_wait(swapchain);
     if (result != WHIT_OK || swapchain->extent.width == 0)
         return result;
@@ -261,25 +261,13 @@ static whit_result show(struct swapchain *swapchain, swapchain_draw draw, void *
     swapchain->info.wait_ms = clock_ms() - start_ms;
     if (result != WHIT_OK || !usable)
         return result;
-    result = record(swapchain, index, draw, user, capture);
+    result = record(swapchain, index, draw, user, keep);
     if (result == WHIT_OK)
         result = commands_submit_between(swapchain->commands, swapchain->acquired,
                                          swapchain->images[index].drawn);
-    return result == WHIT_OK ? present(swapchain, index, shown) : result;
-}
-
-whit_result swapchain_show(struct swapchain *swapchain, swapchain_draw draw, void *user,
-                           bool *shown)
-{
-    swapchain->captured = false;
-    return show(swapchain, draw, user, false, shown);
-}
-
-whit_result swapchain_show_and_keep(struct swapchain *swapchain, swapchain_draw draw, void *user,
-                                    bool *shown)
-{
-    whit_result result = show(swapchain, draw, user, true, shown);
-    swapchain->captured = result == WHIT_OK && *shown && swapchain->captures;
+    if (result == WHIT_OK)
+        result = present(swapchain, index, shown);
+    swapchain->captured = keep && result == WHIT_OK && *shown && swapchain->captures;
     return result;
 }
 
@@ -294,8 +282,7 @@ whit_result swapchain_read(struct swapchain *swapchain, uint8_t *rgba, size_t by
         return WHIT_ERROR_USAGE;
     }
     result = buffer_read(swapchain->capture, 0, rgba, needed);
-    bool swapped = swapchain->format.format == VK_FORMAT_B8G8R8A8_UNORM;
-    for (size_t i = 0; swapped && i < needed; i += 4) {
+    for (size_t i = 0; swapchain->swaps && i < needed; i += 4) {
         uint8_t blue = rgba[i];
         rgba[i] = rgba[i + 2];
         rgba[i + 2] = blue;

@@ -83,7 +83,7 @@ whit_result async_prepare(struct renderer *renderer)
     struct async_state *async = &renderer->async;
     struct gpu_spec own = variant_spec(&renderer->picture),
                     general = variant_async_spec(&renderer->picture);
-    if (stages_are_made(&renderer->picture) && !async->general)
+    if (stage_set_is_made(&renderer->picture.stages.set) && !async->general)
         return stages_bind(&renderer->picture);
     /* Another time may need other constants than those that are being compiled. */
     if (async->job && memcmp(&async->job->stages.spec, &own, sizeof own) != 0) {
@@ -97,8 +97,8 @@ whit_result async_prepare(struct renderer *renderer)
         if (result != WHIT_OK || !async->general)
             return result;
     }
-    return stages_are_made(&renderer->picture) ? stages_bind(&renderer->picture)
-                                               : create_general(renderer, &general);
+    return stage_set_is_made(&renderer->picture.stages.set) ? stages_bind(&renderer->picture)
+                                                            : create_general(renderer, &general);
 }
 
 void async_finish(struct renderer *renderer)

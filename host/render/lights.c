@@ -11,26 +11,13 @@
 
 enum { ROW_BYTES = 16, SAMPLES_DEFAULT = 16 };
 
-static uint32_t light_code(whit_light_kind kind)
-{
-    switch (kind) {
-    case WHIT_LIGHT_POINT:
-        return LIGHT_POINT;
-    case WHIT_LIGHT_DIRECTIONAL:
-        return LIGHT_DIRECTIONAL;
-    case WHIT_LIGHT_SPOT:
-        return LIGHT_SPOT;
-    case WHIT_LIGHT_AREA_SAMPLE:
-        return LIGHT_AREA_SAMPLE;
-    case WHIT_LIGHT_RECTANGLE:
-        return LIGHT_RECTANGLE;
-    case WHIT_LIGHT_TRIANGLE:
-        return LIGHT_TRIANGLE;
-    case WHIT_LIGHT_KINDS:
-        break;
-    }
-    return LIGHT_POINT;
-}
+_Static_assert((int)WHIT_LIGHT_POINT == (int)LIGHT_POINT &&
+                   (int)WHIT_LIGHT_DIRECTIONAL == (int)LIGHT_DIRECTIONAL &&
+                   (int)WHIT_LIGHT_SPOT == (int)LIGHT_SPOT &&
+                   (int)WHIT_LIGHT_AREA_SAMPLE == (int)LIGHT_AREA_SAMPLE &&
+                   (int)WHIT_LIGHT_RECTANGLE == (int)LIGHT_RECTANGLE &&
+                   (int)WHIT_LIGHT_TRIANGLE == (int)LIGHT_TRIANGLE,
+               "the same numbers");
 
 static double emitter_area(const struct scene_light *light)
 {
@@ -41,7 +28,7 @@ static double emitter_area(const struct scene_light *light)
 static struct gpu_light make_light(const struct scene_light *light, uint32_t samples)
 {
     struct gpu_light out = {
-        .kind = light_code(light->kind),
+        .kind = (uint32_t)light->kind,
         .per_range = light->range > 0.0f ? 1.0f / light->range : 0.0f,
         .falloff = light->falloff || light->kind == WHIT_LIGHT_AREA_SAMPLE,
         .spot_edge = light->versine_outer,
@@ -85,7 +72,7 @@ uint32_t lights_kinds(const struct scene_pose *pose)
 {
     uint32_t kinds = 0;
     for (uint32_t i = 0; i < pose->light_count; ++i)
-        kinds |= 1u << light_code(pose->lights[i].kind);
+        kinds |= 1u << pose->lights[i].kind;
     return kinds;
 }
 

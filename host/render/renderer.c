@@ -56,7 +56,7 @@ static whit_result create_parts(struct renderer *renderer)
 /* Called late, since renderers that only trace batches never need the kernels of pictures. */
 whit_result renderer_compile(struct renderer *renderer)
 {
-    if (stages_are_made(&renderer->picture) && !renderer->async.general)
+    if (stage_set_is_made(&renderer->picture.stages.set) && !renderer->async.general)
         return stages_complete(&renderer->picture);
     double start_ms = clock_ms();
     whit_result result = renderer->params.compile_async ? async_prepare(renderer)

@@ -107,11 +107,6 @@ bool stage_set_is_made(const struct stage_set *set)
     return set->passes[set->of[STAGE_CAMERA]].pipeline != NULL;
 }
 
-bool stages_are_made(const struct target *target)
-{
-    return stage_set_is_made(&target->stages.set);
-}
-
 whit_result stages_bind(struct target *target)
 {
     struct stages *stages = &target->stages;
@@ -209,8 +204,8 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     struct stages_job was, job;
     struct gpu_spec spec;
     bool few = variant_few_kernels(target);
-    renderer->kept.known &= stages_are_made(target);
-    if (!stages_are_made(target))
+    renderer->kept.known &= stage_set_is_made(set);
+    if (!stage_set_is_made(set))
         return WHIT_OK;
     renderer->params.shader = before;
     spec = variant_spec(target);
@@ -271,7 +266,7 @@ whit_result stages_compile(struct target *target)
     struct stages_job job;
     struct stage_set set;
     struct gpu_spec spec = variant_spec(target);
-    if (stages_are_made(target))
+    if (stage_set_is_made(&target->stages.set))
         return stages_bind(target);
     stages_job_init(target, &spec, true, variant_few_kernels(target), &job);
     whit_result result = stages_job_run(target->renderer->device, &job, &set);

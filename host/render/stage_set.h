@@ -37,7 +37,6 @@ WHIT_CHECK whit_result stages_complete(struct target *target);
 /* Binds the set to the current buffers, if it is not bound. */
 WHIT_CHECK whit_result stages_bind(struct target *target);
 bool stage_set_is_made(const struct stage_set *set);
-bool stages_are_made(const struct target *target);
 void stages_unbind(struct stages *stages);
 void stage_set_finish(struct stage_set *set);
 

@@ -39,43 +39,20 @@ static bool fits_storage(const struct renderer *renderer)
 /* Texel buffers are twice as fast as storage buffers on lavapipe, and may be larger. */
 static bool choose_texel_loads(const struct renderer *renderer)
 {
-    switch (renderer->params.load_path) {
-    case WHIT_LOAD_STORAGE:
-        return false;
-    case WHIT_LOAD_TEXEL:
-        return true;
-    case WHIT_LOAD_AUTO:
-        break;
-    }
+    if (renderer->params.load_path != WHIT_LOAD_AUTO)
+        return renderer->params.load_path == WHIT_LOAD_TEXEL;
     return device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU || !fits_storage(renderer);
 }
 
 whit_result upload_words(struct renderer *renderer, const void *data, uint64_t size_bytes,
-                         uint32_t uses, const char *name, struct buffer **out)
+                         uint32_t uses, const char *name, struct buffer **buffer)
 {
-    *out = NULL;
-    if (size_bytes == 0)
-        return WHIT_OK;
-    whit_result result = buffer_create(renderer->device, size_bytes, uses, name, out);
-    if (result == WHIT_OK)
-        result = buffer_write(*out, 0, data, size_bytes);
-    if (result == WHIT_OK)
-        renderer->scene_buffers.bytes += buffer_size(*out);
-    return result;
-}
-
-/* Writes to *buffer. A buffer that is missing or too small is made anew, a larger one with room to
-   grow; passes, which are bound to the old one, are then dropped. */
-static whit_result store_words(struct renderer *renderer, const void *data, uint64_t size_bytes,
-                               const char *name, struct buffer **buffer)
-{
-    uint32_t uses = renderer->scene_buffers.texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
     uint64_t held_bytes = *buffer ? buffer_size(*buffer) : 0;
     if (size_bytes == 0)
         return WHIT_OK;
     if (held_bytes < size_bytes) {
         if (*buffer)
-            passes_finish(renderer);
+            passes_unbind(renderer);
         buffer_destroy(*buffer);
         *buffer = NULL;
         renderer->scene_buffers.bytes -= held_bytes;
@@ -87,6 +64,14 @@ static whit_result store_words(struct renderer *renderer, const void *data, uint
         renderer->scene_buffers.bytes += buffer_size(*buffer);
     }
     return buffer_write(*buffer, 0, data, size_bytes);
+}
+
+/* Writes an array of the trees. */
+static whit_result store_words(struct renderer *renderer, const void *data, uint64_t size_bytes,
+                               const char *name, struct buffer **buffer)
+{
+    uint32_t uses = renderer->scene_buffers.texel_loads ? BUFFER_TEXELS : BUFFER_STORAGE;
+    return upload_words(renderer, data, size_bytes, uses, name, buffer);
 }
 
 static bool reads_instances(const struct accel *accel)

@@ -19,11 +19,12 @@ bool upload_can_widen(const struct renderer *renderer);
 /* Makes and uploads nodes of eight children, if there are none yet, and sets renderer->wide. */
 WHIT_CHECK whit_result upload_wide(struct renderer *renderer);
 void upload_finish(struct scene_buffers *buffers);
+/* Writes to *buffer. A buffer that is missing or too small is made anew, a larger one with room to
+   grow; passes, which are bound to the old one, are then unbound. Without bytes nothing is done. */
 WHIT_CHECK whit_result upload_words(struct renderer *renderer, const void *data,
                                     uint64_t size_bytes, uint32_t uses, const char *name,
-                                    struct buffer **out);
-/* Uploads what another pose changes: instances with their tree, lights. Drops all passes if a
-   buffer had to grow, as they are bound to it. */
+                                    struct buffer **buffer);
+/* Uploads what another pose changes: instances with their tree, lights. */
 WHIT_CHECK whit_result upload_pose(struct renderer *renderer);
 
 #endif

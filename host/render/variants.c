@@ -611,14 +611,21 @@ void pass_finish(struct pass *pass)
     *pass = (struct pass){0};
 }
 
-void passes_finish(struct renderer *renderer)
+void passes_unbind(struct renderer *renderer)
 {
-    renderer->kept.known = false;
-    renderer->async.general = false;
-    stage_set_finish(&renderer->picture.stages.set);
-    stage_set_finish(&renderer->probe.stages.set);
+    stages_unbind(&renderer->picture.stages);
+    stages_unbind(&renderer->probe.stages);
     for (int any = 0; any < 2; ++any) {
         pass_finish(&renderer->trace.singles[any]);
         pass_finish(&renderer->trace.beams[any]);
     }
+}
+
+void passes_finish(struct renderer *renderer)
+{
+    renderer->kept.known = false;
+    renderer->async.general = false;
+    passes_unbind(renderer);
+    stage_set_finish(&renderer->picture.stages.set);
+    stage_set_finish(&renderer->probe.stages.set);
 }

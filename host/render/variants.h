@@ -59,5 +59,7 @@ void pass_finish(struct pass *pass);
 /* Destroys the binding sets, and keeps the pipelines. */
 void pass_unbind(struct pass *pass);
 void passes_finish(struct renderer *renderer);
+/* Unbinds the kernels of pictures and probes, and drops those of ray batches. */
+void passes_unbind(struct renderer *renderer);
 
 #endif

@@ -122,19 +122,6 @@ static whit_result take_cameras(struct renderer *renderer, const whit_camera *ca
     return result;
 }
 
-static whit_result upload_views(struct renderer *renderer, uint32_t count)
-{
-    struct views *views = &renderer->views;
-    uint64_t bytes = count * sizeof *views->all;
-    uint64_t held_bytes = views->buffer ? buffer_size(views->buffer) : 0;
-    if (held_bytes >= bytes)
-        return buffer_write(views->buffer, 0, views->all, bytes);
-    stages_unbind(&renderer->picture.stages);
-    buffer_destroy(views->buffer);
-    renderer->scene_buffers.bytes -= held_bytes;
-    return upload_words(renderer, views->all, bytes, BUFFER_STORAGE, "views", &views->buffer);
-}
-
 /* Chooses kernels as for a single picture of as many rays. *others: they differ from before. */
 static whit_result choose_kernels(struct renderer *renderer, bool *others)
 {
@@ -165,7 +152,8 @@ static whit_result views_take(struct renderer *renderer, const whit_camera *came
     if (result == WHIT_OK)
         result = take_cameras(renderer, cameras, count);
     if (result == WHIT_OK)
-        result = upload_views(renderer, count);
+        result = upload_words(renderer, views->all, count * sizeof *views->all, BUFFER_STORAGE,
+                              "views", &views->buffer);
     if (result == WHIT_OK)
         result = frame_write(renderer);
     views->count = count;

@@ -287,8 +287,7 @@ static whit_result draw_window(struct view *view)
         keep = false;
     }
     view->drawn_ms = now_ms;
-    whit_result result = keep ? swapchain_show_and_keep(view->swapchain, ui_draw, view->ui, &shown)
-                              : swapchain_show(view->swapchain, ui_draw, view->ui, &shown);
+    whit_result result = swapchain_show(view->swapchain, ui_draw, view->ui, keep, &shown);
     if (result == WHIT_OK)
         result = ui_result(view->ui);
     if (result == WHIT_OK && !shown)

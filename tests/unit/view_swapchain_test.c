@@ -78,14 +78,14 @@ static whit_result show_text(struct shop *shop, bool *shown)
         ui_text("text");
     ui_panel_end();
     ui_end(shop->ui);
-    return swapchain_show(shop->swapchain, ui_draw, shop->ui, shown);
+    return swapchain_show(shop->swapchain, ui_draw, shop->ui, false, shown);
 }
 
 /* Shows the window without an overlay, and reads its pixels. */
 static whit_result read_window(struct shop *shop, uint8_t rgba[WIDTH * HEIGHT * 4])
 {
     bool shown = false;
-    whit_result result = swapchain_show_and_keep(shop->swapchain, NULL, NULL, &shown);
+    whit_result result = swapchain_show(shop->swapchain, NULL, NULL, true, &shown);
     if (result == WHIT_OK)
         result = swapchain_read(shop->swapchain, rgba, WIDTH * HEIGHT * 4);
     if (result == WHIT_OK)
