@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/child.h"
 #include "base/text.h"
 #include "whit/whit_program.h"
 
@@ -491,11 +492,13 @@ whit_result device_list(const whit_log *log, whit_device_info **infos, uint32_t 
     VkPhysicalDevice *handles = NULL;
     *infos = NULL;
     *count = 0;
+    child_hold_forks(); /* as in device_create */
     whit_result result = instance_create(&device);
     if (result == WHIT_OK)
         result = list_physical(&device, &handles, infos, count);
-    free(handles);
     instance_destroy(&device);
+    child_release_forks();
+    free(handles);
     return result;
 }
 

@@ -1,7 +1,35 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <vulkan/vulkan_core.h>
+
+#include "../wrapped.h"
+#include "base/child.h"
 #include "device_fixture.h"
+
+/* Whether processes may be forked, and how often drivers were loaded while they might. */
+static bool held;
+static uint32_t loads, loads_unheld;
+
+WRAPPED(void, child_hold_forks, void)
+{
+    held = true;
+    __real_child_hold_forks();
+}
+
+WRAPPED(void, child_release_forks, void)
+{
+    held = false;
+    __real_child_release_forks();
+}
+
+WRAPPED(VkResult, vkCreateInstance, const VkInstanceCreateInfo *info,
+        const VkAllocationCallbacks *allocator, VkInstance *out)
+{
+    ++loads;
+    loads_unheld += !held;
+    return __real_vkCreateInstance(info, allocator, out);
+}
 
 static whit_device_info *infos;
 static uint32_t info_count;
@@ -169,6 +197,14 @@ TEST(silent_log_is_fine)
     assert_int_equal(device_create(NULL, &params, NULL, &device), WHIT_ERROR_NO_DEVICE);
     assert_null(device);
     device_destroy(NULL);
+}
+
+/* The last test: drivers take locks, which a child would find held for ever. */
+TEST(no_process_is_forked_while_drivers_load)
+{
+    assert_true(loads > 1); /* by the list, and by devices */
+    assert_int_equal(loads_unheld, 0);
+    assert_false(held);
 }
 
 int main(int argc, char **argv)
