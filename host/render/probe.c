@@ -237,31 +237,11 @@ static whit_result run(struct renderer *renderer, uint32_t max, struct probe_rep
 
 /* ---- The tree ---- */
 
-/* The place of a record in the ray tree, while the tree is put in order. The array of these is also
-   a stack of records. */
+/* The place of a record in the ray tree. */
 struct branch {
     uint32_t first, count; /* records of its child rays, next to each other */
     uint32_t place;        /* index in the ordered tree */
-    /* An entry of the stack, which is not about this record: a record that is to be put in the
-       tree. */
-    uint32_t waiting;
 };
-
-/* Pushes the child rays of a record so that its shadow rays are popped first, in their order, and
-   then the other children, the last one first. */
-static uint32_t push_branches(const struct gpu_probe_ray *records, uint32_t first, uint32_t count,
-                              struct branch *branches, uint32_t top)
-{
-    for (uint32_t i = first; i < first + count; ++i) {
-        if (!is_shadow(&records[i]))
-            branches[top++].waiting = i;
-    }
-    for (uint32_t i = first + count; i-- > first;) {
-        if (is_shadow(&records[i]))
-            branches[top++].waiting = i;
-    }
-    return top;
-}
 
 static void place_ray(const struct gpu_probe_ray *record, const struct branch *branches,
                       struct probe_ray *rays, uint32_t place)
@@ -275,6 +255,24 @@ static void place_ray(const struct gpu_probe_ray *record, const struct branch *b
     if (record->end == PROBE_DEPTH || record->end == PROBE_BAILOUT) {
         for (int i = 0; i < 3; ++i)
             ray->traced.origin[i] = rays[ray->parent].traced.point[i];
+    }
+}
+
+/* Puts a record into the tree, then its shadow rays, in their order, then its other child rays with
+   theirs, the last one first. No tree is deeper than there are generations. */
+static void place_tree(const struct gpu_probe_ray *records, uint32_t record,
+                       struct branch *branches, struct probe_ray *rays, uint32_t *placed)
+{
+    uint32_t first = branches[record].first, end = first + branches[record].count;
+    branches[record].place = (*placed)++;
+    place_ray(&records[record], branches, rays, branches[record].place);
+    for (uint32_t i = first; i < end; ++i) {
+        if (is_shadow(&records[i]))
+            place_tree(records, i, branches, rays, placed);
+    }
+    for (uint32_t i = end; i-- > first;) {
+        if (!is_shadow(&records[i]))
+            place_tree(records, i, branches, rays, placed);
     }
 }
 
@@ -332,7 +330,7 @@ static whit_result order_rays(const struct renderer *renderer, const struct reco
                               struct probe_report *report)
 {
     const struct gpu_probe_ray *records = list->records;
-    uint32_t count = report->ray_count, top = 0, place = 0;
+    uint32_t count = report->ray_count, placed = 0;
     struct branch *branches = calloc(count ? count : 1, sizeof *branches);
     report->rays = array_alloc(count, sizeof *report->rays);
     whit_result result = WHIT_OK;
@@ -343,13 +341,7 @@ static whit_result order_rays(const struct renderer *renderer, const struct reco
                   report->y);
         result = WHIT_ERROR_STATUS;
     } else if (count > 0) {
-        branches[top++].waiting = 0;
-    }
-    while (top > 0) {
-        uint32_t record = branches[--top].waiting;
-        branches[record].place = place;
-        place_ray(&records[record], branches, report->rays, place++);
-        top = push_branches(records, branches[record].first, branches[record].count, branches, top);
+        place_tree(records, 0, branches, report->rays, &placed);
     }
     if (result == WHIT_OK)
         order_values(branches, list->places, report);

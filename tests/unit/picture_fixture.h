@@ -76,13 +76,8 @@ static inline struct scene *glowing_panel(double height)
 {
     struct scene *scene = dark_scene((double[]){0, height + 3, 0}, (double[]){0, height, 0});
     add_object(scene, mesh_plane(4), matte(1, 1, 1), 0, height, 0);
-    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_RECTANGLE,
-                                                .node = SCENE_NONE,
-                                                .two_sided = true,
-                                                .position = {-2, height, -2},
-                                                .edge_u = {4, 0, 0},
-                                                .edge_v = {0, 0, 4},
-                                                .color = {1, 1, 1}});
+    scene_put_light(scene, emitter(WHIT_LIGHT_RECTANGLE, (double[]){-2, height, -2},
+                                   (double[]){4, 0, 0}, (double[]){0, 0, 4}, 1));
     return scene;
 }
 

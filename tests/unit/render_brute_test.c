@@ -192,12 +192,8 @@ TEST(many_shadows_are_refused)
 {
     struct scene *scene = scene_begin(&fixture_log, "ground");
     scene_put(scene, mesh_terrain(8.0, 0.6, 120, 1), NULL);
-    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_RECTANGLE,
-                                                .node = SCENE_NONE,
-                                                .color = {1, 1, 1},
-                                                .position = {0, 5, 0},
-                                                .edge_u = {1, 0, 0},
-                                                .edge_v = {0, 0, 1}});
+    scene_put_light(scene, emitter(WHIT_LIGHT_RECTANGLE, (double[]){0, 5, 0}, (double[]){1, 0, 0},
+                                   (double[]){0, 0, 1}, 1));
     own_fixture f = fixture_open(scene, &no_trees, NULL);
     const whit_renderer_params params = {.width = 8, .height = 8, .light_samples = 64};
     renderer_destroy(f.renderer);

@@ -94,17 +94,10 @@ static void add_lights(struct scene *scene)
 /* Flat emitters of both shapes. */
 static void add_emitters(struct scene *scene)
 {
-    struct scene_light light = {.kind = WHIT_LIGHT_RECTANGLE,
-                                .node = SCENE_NONE,
-                                .two_sided = true,
-                                .position = {-0.3, 2.4, -0.3},
-                                .edge_u = {0.6, 0, 0},
-                                .edge_v = {0, 0, 0.6},
-                                .color = {6, 6, 6}};
-    scene_put_light(scene, light);
-    light.kind = WHIT_LIGHT_TRIANGLE;
-    light.position[0] = -1.9;
-    scene_put_light(scene, light);
+    for (int i = 0; i < 2; ++i)
+        scene_put_light(scene, emitter(i ? WHIT_LIGHT_TRIANGLE : WHIT_LIGHT_RECTANGLE,
+                                       (double[]){i ? -1.9 : -0.3, 2.4, -0.3},
+                                       (double[]){0.6, 0, 0}, (double[]){0, 0, 0.6}, 6));
 }
 
 static void add_sky(struct scene *scene)
@@ -183,51 +176,10 @@ TEST(kernels_for_a_scene_draw_the_same)
     assert_true(plain.kernel_instructions < rich.kernel_instructions);
 }
 
-enum { RAYS = 512 };
-
-struct traced {
-    struct gpu_hit hits[RAYS];
-    uint32_t instructions;
-};
-
-static struct traced trace(struct scene *scene)
-{
-    struct traced traced = {0};
-    struct gpu_ray rays[RAYS];
-    struct pipeline_info info;
-    for (int i = 0; i < RAYS; ++i)
-        rays[i] =
-            (struct gpu_ray){.origin = {0, 4, 7},
-                             .dir = {0.25f * (float)(i % 32 - 16), -4, -0.6f * (float)(i / 32)},
-                             .t_max = INFINITY};
-    own_fixture f = fixture_open(scene, NULL, &small);
-    assert_int_equal(renderer_trace(f.renderer, rays, RAYS, false, traced.hits, NULL), WHIT_OK);
-    pipeline_get_info(f.renderer->trace.singles[0].pipeline, &info);
-    traced.instructions = info.instructions;
-    return traced;
-}
-
-/* A driver that gets kernels whole and fills the constants in itself finds the same hits. Run only
-   where WHIT_TEST_WHOLE_KERNELS is set, since lavapipe takes seconds to compile one. The tests of
-   device_compute check that kernels do go to the driver whole. */
-TEST(the_driver_fills_in_the_same)
-{
-    if (!getenv("WHIT_TEST_WHOLE_KERNELS"))
-        skip();
-    struct traced a = trace(rich_scene());
-    assert_int_equal(setenv("WHIT_NO_SPECIALIZE", "1", 1), 0);
-    struct traced b = trace(rich_scene());
-    assert_int_equal(unsetenv("WHIT_NO_SPECIALIZE"), 0);
-    assert_memory_equal(a.hits, b.hits, sizeof a.hits);
-    assert_int_not_equal(a.instructions, b.instructions);
-    uint32_t met = 0;
-    for (int i = 0; i < RAYS; ++i)
-        met += a.hits[i].primitive != HIT_NONE;
-    assert_in_range(met, RAYS / 4, RAYS - 1);
-}
-
-/* A driver that gets kernels whole draws the same picture too. lavapipe takes a quarter of a minute
-   to inline the calls of the whole kernel. */
+/* A driver that gets kernels whole and fills the constants in itself draws the same picture. Run
+   only where WHIT_TEST_WHOLE_KERNELS is set, since lavapipe takes a quarter of a minute to inline
+   the calls of the whole kernel. The tests of device_compute check that kernels do go to the driver
+   whole. */
 TEST(the_driver_draws_the_same)
 {
     if (!getenv("WHIT_TEST_WHOLE_KERNELS"))

@@ -95,8 +95,25 @@ static inline void fixture_close(struct fixture *f)
     scene_destroy(f->scene);
 }
 
+/* Another renderer over the trees of `f`, which is destroyed at the end of its block, before `f`:
+   own_renderer other = fixture_beside(&f, &params). */
+static inline struct fixture fixture_beside(const struct fixture *f,
+                                            const whit_renderer_params *params)
+{
+    struct fixture other = {.device = f->device, .accel = f->accel};
+    fixture_renew(&other, params);
+    return other;
+}
+
+static inline void drop_fixture_beside(struct fixture *other)
+{
+    renderer_destroy(other->renderer);
+}
+
+#define own_renderer __attribute__((cleanup(drop_fixture_beside), unused)) struct fixture
+
 /* Closed at the end of its block. */
-#define own_fixture __attribute__((cleanup(fixture_close), unused)) struct fixture
+#define own_fixture  __attribute__((cleanup(fixture_close), unused)) struct fixture
 
 /* Asserts that no renderer of the trees of `f` can be made with any params of `wrong`. */
 static inline void fixture_refuses(const struct fixture *f, const whit_renderer_params *wrong,
@@ -109,6 +126,29 @@ static inline void fixture_refuses(const struct fixture *f, const whit_renderer_
             fail_msg("params %zu are not refused", i);
         assert_null(renderer);
     }
+}
+
+/* A two-sided flat emitter, or a half of it, of the given radiance. */
+static inline struct scene_light emitter(whit_light_kind kind, const double corner[3],
+                                         const double u[3], const double v[3], float radiance)
+{
+    struct scene_light light = {.kind = kind, .node = SCENE_NONE, .two_sided = true};
+    memcpy(light.position, corner, sizeof light.position);
+    memcpy(light.edge_u, u, sizeof light.edge_u);
+    memcpy(light.edge_v, v, sizeof light.edge_v);
+    set_rgb(light.color, radiance, radiance, radiance);
+    return light;
+}
+
+/* `count` triangles, each of them `step` farther along an axis than the one before. */
+static inline struct scene_mesh mesh_stack(uint32_t count, const float corners[9], int axis,
+                                           float step)
+{
+    own_memory float *all = array_alloc(count, 9 * sizeof *all);
+    assert_non_null(all);
+    for (uint32_t i = 0; i < 9 * count; ++i)
+        all[i] = corners[i % 9] + ((int)(i % 3) == axis ? step * (float)(i / 9) : 0.0f);
+    return mesh_triangles(all, count);
 }
 
 /* ---- Pictures ---- */

@@ -18,18 +18,6 @@ static void floor_point(uint32_t x, uint32_t y, uint32_t side, double out[3])
     out[2] = ((y + 0.5) / side * 2.0 - 1.0) * reach;
 }
 
-static struct scene_light emitter(whit_light_kind kind, const double corner[3], const double u[3],
-                                  const double v[3], float radiance)
-{
-    struct scene_light light = {
-        .name = string_copy("emitter"), .kind = kind, .node = SCENE_NONE, .two_sided = true};
-    memcpy(light.position, corner, sizeof light.position);
-    memcpy(light.edge_u, u, sizeof light.edge_u);
-    memcpy(light.edge_v, v, sizeof light.edge_v);
-    set_rgb(light.color, radiance, radiance, radiance);
-    return light;
-}
-
 /* The form factor from an emitter to a horizontal floor, as a sum over midpoints in double. A
    triangle is half of the square that its edges span. */
 static double form_factor(const struct scene_light *light, const double p[3])
@@ -401,16 +389,9 @@ TEST(packets_to_a_light_shade_as_rays_do)
         {{1, 1.6, 1}, -1e5, 0, true, false, false},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        struct scene_light light = {.name = string_copy("light"),
-                                    .kind = WHIT_LIGHT_POINT,
-                                    .node = SCENE_NONE,
-                                    .color = {1, 1, 1}};
-        memcpy(light.position, cases[i].at, sizeof light.position);
-        if (cases[i].flat) {
-            free(light.name);
-            light = emitter(WHIT_LIGHT_RECTANGLE, cases[i].at, (double[]){0.3, 0, 0},
-                            (double[]){0, 0, 0.3}, 1);
-        }
+        struct scene_light light =
+            emitter(cases[i].flat ? WHIT_LIGHT_RECTANGLE : WHIT_LIGHT_POINT, cases[i].at,
+                    (double[]){0.3, 0, 0}, (double[]){0, 0, 0.3}, 1);
         const whit_accel_params accel = {.build = cases[i].clipped ? WHIT_BUILD_SPATIAL
                                                                    : WHIT_BUILD_BINNED,
                                          .instances = WHIT_INSTANCES_OFF};

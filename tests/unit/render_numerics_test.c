@@ -122,50 +122,17 @@ TEST(only_fast_leaks)
     assert_int_equal(leaks[NUMERICS_EXACT], 0);
 }
 
-static const whit_renderer_params glass_params = {
-    .width = 48, .height = 32, .depth = 6, .camera = GLASS_CAMERA, .packets = WHIT_PACKETS_ON};
-
-/* Glass rings over ground: shadows through filters, media, all kinds of traversals. In the long run
-   alone: larger pictures at all levels are in tests/check/whit.suite (check_own). */
-TEST(pictures_agree)
-{
-    if (cases_times() == 0)
-        skip();
-    whit_renderer_params params = glass_params;
-    own_fixture f = fixture_open(glass_scene(), NULL, &params);
-    struct image pictures[LEVELS];
-    for (uint32_t level = 0; level < LEVELS; ++level) {
-        params.numerics = level;
-        fixture_renew(&f, &params);
-        pictures[level] = render(&f);
-    }
-    const float *watertight = pictures[NUMERICS_WATERTIGHT].pixels;
-    for (uint32_t level = 0; level < LEVELS; ++level) {
-        const float *other = pictures[level].pixels;
-        uint32_t differ = 0, count = params.width * params.height;
-        for (uint32_t i = 0; i < count; ++i) {
-            bool same = true;
-            for (uint32_t k = 0; k < 3; ++k)
-                same = same && fabsf(other[4 * i + k] - watertight[4 * i + k]) <= 1e-3f;
-            differ += !same;
-        }
-        print_message("  %s: %u of %u pixels differ by more than 1e-3\n", names[level], differ,
-                      count);
-        assert_true(differ < count / 200);
-    }
-    for (uint32_t level = 0; level < LEVELS; ++level)
-        image_finish(&pictures[level]);
-}
-
 /* Without trees every box is that of the whole scene, which changes neither exact decisions by
    integers nor deferred rays. */
 TEST(trees_do_not_matter)
 {
     const whit_accel_params none = {.build = WHIT_BUILD_NONE};
-    whit_renderer_params params = glass_params;
-    params.width = 24;
-    params.height = 16;
-    params.numerics = NUMERICS_EXACT;
+    const whit_renderer_params params = {.width = 24,
+                                         .height = 16,
+                                         .depth = 6,
+                                         .camera = GLASS_CAMERA,
+                                         .packets = WHIT_PACKETS_ON,
+                                         .numerics = NUMERICS_EXACT};
     own_picture with = picture_of(glass_scene(), NULL, &params);
     own_picture without = picture_of(glass_scene(), &none, &params);
     assert_true(with.stats.deferred > 0 && without.stats.deferred > 0);

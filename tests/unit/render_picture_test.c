@@ -139,21 +139,15 @@ TEST(tiles_do_not_matter)
     }
 }
 
-static struct scene *panes_scene(int count)
+static struct scene *panes_scene(uint32_t count)
 {
-    float(*corners)[9] = array_alloc((size_t)count, sizeof *corners);
-    assert_non_null(corners);
-    for (int i = 0; i < count; ++i) {
-        float y = 2.0f + 1e-5f * (float)i;
-        memcpy(corners[i], (float[9]){-5, y, -5, 5, y, -5, 0, y, 9}, sizeof corners[i]);
-    }
+    static const float pane_corners[9] = {-5, 2, -5, 5, 2, -5, 0, 2, 9};
     struct scene *scene = floor_scene(1);
     struct scene_material pane = material_plain("pane");
     set_rgb(pane.transmission, 1, 1, 1);
     pane.thin_walled = true;
-    add_object(scene, mesh_triangles(corners[0], (uint32_t)count), pane, 0, 0, 0);
+    add_object(scene, mesh_stack(count, pane_corners, 1, 1e-5f), pane, 0, 0, 0);
     scene_put_sun(scene, 0, -1, 0, 1.0f);
-    free(corners);
     return scene;
 }
 

@@ -263,13 +263,8 @@ static struct scene *sieve_scene(void)
     set_rgb(m.reflection, 0.8f, 0.8f, 0.8f);
     add_object(scene, mesh_box(3, 2.5, 0.2), m, 0, 1.2, -1.5);
     scene_put_lamp(scene, 2, 3.5, 4, 6.0f);
-    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_RECTANGLE,
-                                                .node = SCENE_NONE,
-                                                .position = {-1, 5, 0},
-                                                .direction = {0, -1, 0},
-                                                .edge_u = {1, 0, 0},
-                                                .edge_v = {0, 0, 1},
-                                                .color = {3, 3, 3}});
+    scene_put_light(scene, emitter(WHIT_LIGHT_RECTANGLE, (double[]){-1, 5, 0}, (double[]){1, 0, 0},
+                                   (double[]){0, 0, 1}, 3));
     return scene;
 }
 

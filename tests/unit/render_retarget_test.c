@@ -42,17 +42,15 @@ enum { STEPS = sizeof steps / sizeof *steps };
 static void check_same(const struct fixture *f, const char *name,
                        const whit_renderer_params *params)
 {
-    struct fixture fresh = {.device = f->device, .accel = f->accel};
     whit_renderer_params own = *params;
     own.packets = WHIT_PACKETS_OFF; /* else it would depend on the size that it was made with */
     own_picture picture = render_picture(f);
-    fixture_renew(&fresh, &own);
+    own_renderer fresh = fixture_beside(f, &own);
     own_picture expected = render_picture(&fresh);
     assert_int_equal(picture.color.width, params->width);
     assert_int_equal(picture.color.height, params->height);
     assert_same_picture(name, &picture, &expected);
     assert_int_equal(picture.stats.device_bytes, expected.stats.device_bytes);
-    renderer_destroy(fresh.renderer);
 }
 
 static void walk(const char *name, const whit_accel_params *accel, int count)

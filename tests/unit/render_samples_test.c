@@ -20,13 +20,8 @@ static struct scene *scene_of_samples(void)
     set_rgb(ball.reflection, 0.2f, 0.3f, 0.4f);
     add_object(scene, mesh_plane(3), floor, 0, 0, 0);
     add_object(scene, mesh_sphere(0.5, 12, 8), ball, 0, 0.5, 0);
-    scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_RECTANGLE,
-                                                .node = SCENE_NONE,
-                                                .position = {-1.1, 2.7, -0.8},
-                                                .direction = {0, -1, 0},
-                                                .edge_u = {1.9, 0, 0},
-                                                .edge_v = {0, 0, 1.3},
-                                                .color = {2.1f, 1.7f, 1.3f}});
+    scene_put_light(scene, emitter(WHIT_LIGHT_RECTANGLE, (double[]){-1.1, 2.7, -0.8},
+                                   (double[]){1.9, 0, 0}, (double[]){0, 0, 1.3}, 1.7f));
     scene->cameras[0].lens_radius = 0.15f;
     return scene;
 }

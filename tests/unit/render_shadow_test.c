@@ -331,32 +331,19 @@ TEST_BY_TURNS(catchers_show_shadows_alone, 2, 4)
 
 /* ---- Traversals that are cut short ---- */
 
-/* Horizontal triangles above each other, 1e-4 apart, from `y` upwards. */
-static struct scene_mesh sheets(uint32_t count, float y)
-{
-    float(*corners)[9] = array_alloc(count, sizeof *corners);
-    assert_non_null(corners);
-    for (uint32_t i = 0; i < count; ++i) {
-        float at = y + (float)i * 1e-4f;
-        memcpy(corners[i], (float[9]){-2, at, -2, 0, at, 3, 2, at, -2}, sizeof corners[i]);
-    }
-    struct scene_mesh mesh = mesh_triangles(corners[0], count);
-    free(corners);
-    return mesh;
-}
-
 /* A ray that passes more sheets than lavapipe allows loop iterations gives an error and no picture.
    The sheets are on the way of camera rays, or only of shadow rays. */
 TEST_BY_TURNS(cut_walks_through_sheets_are_reported, 3, 4)
 {
     for (int lit = 0; lit < 2; ++lit) {
+        const float y = lit ? 10 : -9, corners[9] = {-2, y, -2, 0, y, 3, 2, y, -2};
         struct scene *scene = lit ? floor_scene(eye_height)
                                   : dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
         struct scene_material m = material_plain("sheet");
         m.alpha = lit ? SCENE_ALPHA_BLEND : SCENE_ALPHA_MASK;
         m.alpha_cutoff = 0.5f;
         m.opacity = lit ? 1e-3f : 0.0f; /* 1/64 stop is more: nothing is lost */
-        add_object(scene, sheets(70000, lit ? 10 : -9), m, 0, 0, 0);
+        add_object(scene, mesh_stack(70000, corners, 1, 1e-4f), m, 0, 0, 0);
         set_rgb(scene->environment.horizon, 0.5f, 0.5f, 0.5f);
         set_rgb(scene->environment.ground, 0.5f, 0.5f, 0.5f);
         scene_put_sun(scene, 0, -1, 0, lit ? 0.5f : 0.0f);

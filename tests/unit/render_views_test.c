@@ -101,17 +101,15 @@ static void check_scene(const char *name, const whit_renderer_params *params, bo
 {
     whit_camera cameras[MANY];
     own_fixture f = fixture_open(file_scene(name), NULL, params);
-    struct fixture single = {.device = f.device, .accel = f.accel};
     whit_renderer_params plain = *params;
     plain.packets = WHIT_PACKETS_OFF;
-    fixture_renew(&single, &plain);
+    own_renderer single = fixture_beside(&f, &plain);
     assert_int_equal(f.renderer->packets, params->packets == WHIT_PACKETS_ON);
     place_cameras(cameras, MANY, mixed);
     check_views(&f, &single, cameras, count);
     if (count == MANY)
         check_bands(&f, &single, cameras, count);
     print_message("  %s: 0 of %u views differ\n", name, count);
-    renderer_destroy(single.renderer);
 }
 
 /* Sizes are no multiples of blocks, and tiles have several views and parts of views. The other
@@ -160,16 +158,13 @@ TEST_BY_TURNS(many_views_have_the_kernels_of_a_large_picture, 1, 2)
     const whit_renderer_params small = {.width = 64, .height = 64, .depth = 2};
     const whit_accel_params flat = {.instances = WHIT_INSTANCES_OFF};
     whit_camera cameras[THRONG];
-    struct fixture f = fixture_open(file_scene("34k"), &flat, &small), single = f;
-    single.renderer = NULL;
-    fixture_renew(&single, &small);
+    own_fixture f = fixture_open(file_scene("34k"), &flat, &small);
+    own_renderer single = fixture_beside(&f, &small);
     assert_true(f.renderer->few_kernels && !f.renderer->packets);
     place_cameras(cameras, THRONG, false);
     check_views(&f, &single, cameras, THRONG);
     assert_false(f.renderer->few_kernels);
     assert_int_equal(f.renderer->packets, upload_can_widen(f.renderer));
-    renderer_destroy(single.renderer);
-    fixture_close(&f);
 }
 
 /* From far away the glass and its hollow may be hit at one place within rounding. Then touching
@@ -179,14 +174,11 @@ TEST_BY_TURNS(media_touch_where_they_do_for_one_view, 0, 2)
     const whit_renderer_params small = {.width = 12, .height = 9, .depth = 4};
     const whit_camera cameras[] = {CAMERA_AT(0.6, 2.35, 900, 0.42, 1.62, 0, 0, 1, 0, 0.3),
                                    CAMERA_AT(3, 2.5, 4, 0, 0.6, 0, 0, 1, 0, 35)};
-    struct fixture f = fixture_open(file_scene("whitted"), NULL, &small), single = f;
-    single.renderer = NULL;
-    fixture_renew(&single, &small);
+    own_fixture f = fixture_open(file_scene("whitted"), NULL, &small);
+    own_renderer single = fixture_beside(&f, &small);
     check_views(&f, &single, cameras, 2);
     assert_true(media_touch(f.renderer->scene, &f.renderer->bodies, &f.renderer->frame));
     assert_false(media_touch(f.renderer->scene, &f.renderer->bodies, &single.renderer->frame));
-    renderer_destroy(single.renderer);
-    fixture_close(&f);
 }
 
 /* Pictures of one camera and of several take turns, and do not change each other. */
@@ -194,9 +186,8 @@ TEST_BY_TURNS(pictures_of_one_camera_in_between, 1, 2)
 {
     const whit_renderer_params small = {.width = 12, .height = 9, .depth = 2};
     whit_camera cameras[MANY];
-    struct fixture f = fixture_open(file_scene("spin"), NULL, &small), single = f;
-    single.renderer = NULL;
-    fixture_renew(&single, &small);
+    own_fixture f = fixture_open(file_scene("spin"), NULL, &small);
+    own_renderer single = fixture_beside(&f, &small);
     place_cameras(cameras, MANY, true);
     own_picture before = render_picture(&f);
     check_views(&f, &single, cameras, 4);
@@ -211,8 +202,6 @@ TEST_BY_TURNS(pictures_of_one_camera_in_between, 1, 2)
     assert_int_equal(renderer_set_time(f.renderer, 0.3), WHIT_OK);
     assert_int_equal(renderer_set_time(single.renderer, 0.3), WHIT_OK);
     check_views(&f, &single, cameras, 3);
-    renderer_destroy(single.renderer);
-    fixture_close(&f);
 }
 
 /* Parameters that are read when a renderer is made are not read again. */
