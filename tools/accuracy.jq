@@ -20,8 +20,8 @@ def inexact: .aimed_rays | "\(.wrong), \(.leaks), \(.misses + .false_hits + .oth
   "On \($day), on \($reports[0].device) (\($reports[0].driver)), clock: \($reports[0].clock). Errors are against the "
   + "reference in double. Times of the usual picture, in ms, and relative to itself:", "",
   ([""] + $scenes | line), (["---"] + ($scenes | map("---:")) | line),
-  (["ms"] + ($reports | map(.rows[0].cpu_ms | round | tostring)) | line),
-  (["beside itself"] + ($reports | map(.rows[0].price.cpu.ratio | "\(.low | digits(2)) to \(.high | digits(2))")) | line),
+  (["ms"] + ($reports | map(.rows[0][.clock + "_ms"] | round | tostring)) | line),
+  (["beside itself"] + ($reports | map(.rows[0].price[.clock].ratio | "\(.low | digits(2)) to \(.high | digits(2))")) | line),
   (["judged at"] + ($reports | map("\(.judged_width) x \(.judged_height)")) | line),
   (["samples of the reference"] + ($reports | map(.reference.samples | tostring)) | line), "",
   "Time relative to the usual picture (`=`: not distinguishable from it), and FLIP:", "",

@@ -97,7 +97,7 @@ if part 1 2; then
     refuse 2 "costs of a line" "wrong:1: --counters is for .whit render" batch wrong
     echo "'$SWARM' -o x.png 'x" >wrong
     refuse 2 "a quote without end" "wrong:1: a quote has no end" batch wrong
-    echo "'$SWARM' -o x.png" | tee wrong >>wrong2 && sed 's/-o /-o .\//' wrong2 >>wrong
+    echo "'$SWARM' -o x.png" | tee wrong >>wrong2 && sed "s,-o ,-o $PWD/," wrong2 >>wrong
     refuse 2 "two lines of one picture" "wrong:2: its -o is the -o of line 1" batch wrong
     printf '%s --frames %s -o x.#.png\n' "'$SWARM'" 0-4 "'$SWARM'" 6-9 "'$SWARM'" 3-5 >wrong
     refuse 2 "frames in two lines" "wrong:3: its -o is the -o of line 1" batch wrong

@@ -4,12 +4,13 @@
 mkdir "$OUT/files"
 cp "$CUBE" "$OUT/files"
 echo 'v 0 0 nonsense' >"$OUT/files/broken.obj"
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >"$OUT/files/triangle.OFF"
 
 sweep() {
     WHIT_SWEEP_LIMIT=$1 "$SCENES/../tools/sweep" "$OUT/files" "$2" >"$OUT/stdout" 2>"$OUT/stderr"
 }
-check "a good and a broken file" sweep 10 "$WHIT"
-check "are counted" grep -q '^2 files: 1 rendered, 1 refused, 0 bad$' "$OUT/stdout"
+check "two good files and a broken one" sweep 10 "$WHIT"
+check "are counted" grep -q '^3 files: 2 rendered, 1 refused, 0 bad$' "$OUT/stdout"
 
 # fake BODY [SECONDS]: a script with this body, in the place of whit, fails the sweep.
 fake() {

@@ -56,6 +56,18 @@ static bool add_name(struct outputs *outputs, const struct output *output, const
     return added;
 }
 
+/* The name with its folder as the disk has it, so that all names of a file are the same; free() it.
+   NULL: out of memory. */
+static char *resolve(const char *name)
+{
+    char *folder = path_folder(name);
+    char *real = folder ? realpath(folder[0] ? folder : ".", NULL) : NULL;
+    char *whole = folder ? string_format("%s/%s", real ? real : folder, path_name(name)) : NULL;
+    free(folder);
+    free(real);
+    return whole;
+}
+
 bool outputs_add(struct outputs *outputs, const struct render_request *request, uint32_t line)
 {
     const char *const names[][2] = {{"-o", request->output},
@@ -64,13 +76,13 @@ bool outputs_add(struct outputs *outputs, const struct render_request *request, 
     bool added = true;
     for (size_t i = 0; added && i < sizeof names / sizeof *names; ++i) {
         const struct output output = {.line = line, .option = names[i][0]};
-        const char *name = names[i][1];
+        char *name = names[i][1] ? resolve(names[i][1]) : NULL;
         if (!name)
-            continue;
-        while (strncmp(name, "./", 2) == 0)
-            name += 2;
-        added = request->frames.given ? add_frames(outputs, &output, name, &request->frames)
-                                      : add_name(outputs, &output, name);
+            added = !names[i][1];
+        else
+            added = request->frames.given ? add_frames(outputs, &output, name, &request->frames)
+                                          : add_name(outputs, &output, name);
+        free(name);
     }
     return added;
 }
