@@ -1,9 +1,11 @@
 # Embeds the HTML pages of reports as arrays, so that no file is searched for at run time.
 foreach(command check cost)
+  set(head ${CMAKE_CURRENT_SOURCE_DIR}/app/page_head.html)
   set(page ${CMAKE_CURRENT_SOURCE_DIR}/app/${command}/page.html)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${page})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${head} ${page})
+  file(READ ${head} head_html HEX)
   file(READ ${page} page_html HEX)
-  string(REGEX REPLACE "(..)" "0x\\1," page_html "${page_html}")
+  string(REGEX REPLACE "(..)" "0x\\1," page_html "${head_html}${page_html}")
   set(page_source ${PROJECT_BINARY_DIR}/${command}_page_html.c)
   file(CONFIGURE OUTPUT ${page_source} @ONLY CONTENT
     "extern const char ${command}_page_html[];\nconst char ${command}_page_html[] = {@page_html@0};\n")

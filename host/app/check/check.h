@@ -70,6 +70,6 @@ struct json_t;
 struct json_t *check_document(const struct check *check, int status);
 void check_write_junit(FILE *to, const void *check); /* for document_save_written */
 WHIT_CHECK whit_result check_save_page(const struct check *check, int status);
-extern const char check_page_html[]; /* page.html, ended by 0; CMake makes it */
+extern const char check_page_html[]; /* page_head.html and page.html, ended by 0 */
 
 #endif

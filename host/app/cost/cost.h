@@ -27,7 +27,7 @@ struct cost {
 #define COST_SECONDS       150.0
 #define COST_SECONDS_QUICK 20.0
 
-extern const char cost_page_html[]; /* page.html, ended by 0; CMake makes it */
+extern const char cost_page_html[]; /* page_head.html and page.html, ended by 0 */
 whit_result cost_save_page(const struct cost *cost);
 
 /* Prints a comparison of two reports (cost_compare.c). */
