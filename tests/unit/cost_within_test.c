@@ -1,4 +1,5 @@
 /* Which settings `whit cost` and --budget-ms give up for time, tested with invented reports. */
+#include "base/random.h"
 #include "cost/within.h"
 #include "unit.h"
 
@@ -7,16 +8,11 @@ static const double USUAL_MS = 100.0;
 
 static struct cost_report report;
 
-static uint32_t random_bits(void)
-{
-    static uint64_t state = 1;
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (uint32_t)(state >> 33);
-}
+static uint64_t random_state = 1;
 
 static double random_up_to(double most)
 {
-    return most * (random_bits() % 10000) / 1e4;
+    return most * (double)(splitmix64(&random_state) % 10000) / 1e4;
 }
 
 /* The position of a setting in the order of within.c, from 1; 0: it gives up nothing. */
@@ -46,11 +42,11 @@ static void add_row(uint32_t knob, uint32_t setting, uint32_t samples)
     const struct knob *k = &knob_table(&count)[knob];
     struct cost_row *row = &report.rows[report.row_count++];
     double ratio = ratio_of(knob, setting);
-    bool told_apart = random_bits() % 8 > 0;
+    bool told_apart = splitmix64(&random_state) % 8 > 0;
     *row = (struct cost_row){.knob_index = knob,
                              .setting_index = setting,
                              .change = SETTING_LIGHT,
-                             .measured = samples > 0 || random_bits() % 16 > 0};
+                             .measured = samples > 0 || splitmix64(&random_state) % 16 > 0};
     snprintf(row->knob, sizeof row->knob, "%s", k->name);
     snprintf(row->setting, sizeof row->setting, "%s", knob_setting_name(k, setting));
     knob_option(k, setting, row->option, sizeof row->option);

@@ -190,7 +190,7 @@ static void write_pixel(const struct difference *difference, const struct drawin
 /* ---- A case as it was ---- */
 
 struct past {
-    struct job job, input; /* job: owns the scene and the shader of `input` */
+    struct job job; /* has borrowed the studio's device and compiler */
     struct drawing picture;
 };
 
@@ -200,18 +200,17 @@ static whit_result draw_past(struct past *past, const struct studio *studio,
     struct job *job = &past->job;
     *past = (struct past){
         .job = {.settings = studio_settings(studio, item), .compiler = studio->job.compiler}};
-    past->input = (struct job){.settings = job->settings, .device = studio->job.device};
     whit_result result = job_load_shader(job);
     if (result == WHIT_OK)
         result = job_load(job);
-    past->input.scene = job->scene;
-    past->input.shader = job->shader;
-    return result == WHIT_OK ? trial_draw(&past->picture, &past->input) : result;
+    job->device = studio->job.device;
+    return result == WHIT_OK ? trial_draw(&past->picture, job) : result;
 }
 
 static void finish_past(struct past *past, const struct studio *studio)
 {
     trial_finish(&past->picture);
+    past->job.device = NULL;
     if (past->job.compiler == studio->job.compiler)
         past->job.compiler = NULL;
     job_finish(&past->job);
@@ -226,7 +225,7 @@ static whit_result write_all(const struct past *past, const struct studio *studi
     find_difference(&past->picture, drawing, &difference);
     write_difference(&difference, to);
     fputs("; ", to);
-    whit_result result = cause_find(&cause, &past->input, &past->picture, &now);
+    whit_result result = cause_find(&cause, &past->job, &past->picture, &now);
     if (result == WHIT_OK)
         cause_write(&cause, to);
     cause_finish(&cause);

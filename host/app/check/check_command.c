@@ -294,26 +294,20 @@ static whit_result explain(const struct check *check, struct studio *studio,
                                          &result->cause, &result->before);
     if (explained != WHIT_OK || !result->cause)
         return explained;
-    char *text = string_format("differs: %s", result->cause);
-    if (!text)
-        return WHIT_ERROR_MEMORY;
-    verdict_set(result, CHECK_DIFFERS, text);
+    verdict_set(result, CHECK_DIFFERS, string_format("differs: %s", result->cause));
     return WHIT_OK;
 }
 
 /* Says in the result's text where the picture has textures that could not be read. */
-static whit_result tell_missing(const struct drawing *drawing, struct check_result *result)
+static void tell_missing(const struct drawing *drawing, struct check_result *result)
 {
     whit_scene_info info;
     whit_scene_get_info(drawing->job.scene, &info);
-    if (info.textures_missing == 0)
-        return WHIT_OK;
-    char *text = string_format("%s; %u texture%s cannot be read and %s magenta", result->text,
-                               info.textures_missing, info.textures_missing == 1 ? "" : "s",
-                               info.textures_missing == 1 ? "is" : "are");
-    if (text)
-        verdict_set(result, result->verdict, text);
-    return text ? WHIT_OK : WHIT_ERROR_MEMORY;
+    uint32_t missing = info.textures_missing;
+    if (missing)
+        verdict_set(result, result->verdict,
+                    string_format("%s; %u texture%s cannot be read and %s magenta", result->text,
+                                  missing, missing == 1 ? "" : "s", missing == 1 ? "is" : "are"));
 }
 
 static whit_result find_verdict(struct check *check, struct studio *studio,
@@ -334,7 +328,9 @@ static whit_result find_verdict(struct check *check, struct studio *studio,
         found = drawing_refuse(drawing, &refused);
     if (found == WHIT_OK && refused)
         verdict_add(result, CHECK_VACUOUS, string_format("refused as a golden: %s", refused));
-    return found == WHIT_OK ? tell_missing(drawing, result) : found;
+    if (found == WHIT_OK)
+        tell_missing(drawing, result);
+    return found == WHIT_OK && !result->text ? WHIT_ERROR_MEMORY : found;
 }
 
 /* Makes small pictures for --report and --thumbnails; for a case that differs, also of the old

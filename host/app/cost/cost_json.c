@@ -196,7 +196,7 @@ json_t *cost_document(const struct cost_report *report, const struct cost *cost)
     return out;
 }
 
-/* ---- Reading ---- */
+/* ---- Reading: what comparisons, choices and the viewer need of a report ---- */
 
 static void text(const json_t *object, const char *key, char *out, size_t out_bytes)
 {
@@ -225,9 +225,6 @@ static void read_price(const json_t *object, struct cost_price *price)
         if (!json_is_object(clock))
             continue;
         price->ratio[c] = read_median(json_object_get(clock, "ratio"), price->rounds);
-        price->usual_ms[c] = read_median(json_object_get(clock, "usual_ms"), price->rounds);
-        price->setting_ms[c] = read_median(json_object_get(clock, "setting_ms"), price->rounds);
-        price->difference[c] = read_median(json_object_get(clock, "difference_ms"), price->rounds);
     }
 }
 
@@ -235,11 +232,7 @@ static void read_difference(const json_t *object, whit_difference *difference)
 {
     difference->pixel_count = document_read_count(object, "pixels");
     difference->rmse = document_read_number(object, "rmse", 0.0);
-    difference->relative_mse = document_read_number(object, "relative_mse", 0.0);
-    difference->largest = document_read_number(object, "largest", 0.0);
-    difference->over_1_255 = document_read_count(object, "over_1_255");
     difference->flip_mean = document_read_number(object, "flip", 0.0);
-    difference->nonfinite_b = document_read_count(object, "non_finite");
 }
 
 static void read_hits(const json_t *object, struct cost_hits *hits)
@@ -248,16 +241,9 @@ static void read_hits(const json_t *object, struct cost_hits *hits)
     hits->unanswered = json_is_true(json_object_get(object, "unanswered"));
     hits->judged.tally.rays = document_read_count(object, "rays");
     hits->judged.tally.wrong = document_read_count(object, "wrong");
-    hits->judged.tally.leaks = document_read_count(object, "leaks");
     hits->judged.tally.misses = document_read_count(object, "misses");
     hits->judged.tally.false_hits = document_read_count(object, "false_hits");
     hits->judged.tally.other_ids = document_read_count(object, "other_ids");
-    hits->judged.non_finite = document_read_count(object, "non_finite");
-    hits->judged.ulp_rays = document_read_count(object, "ulp_rays");
-    hits->judged.ulp_median = document_read_number(object, "ulp_median", 0.0);
-    hits->judged.ulp_999 = document_read_number(object, "ulp_999", 0.0);
-    hits->judged.ulp_max = document_read_number(object, "ulp_max", 0.0);
-    hits->ms = document_read_number(object, "ms", -1.0);
 }
 
 /* Finds the knob and setting by the names in `row`, or neither of the two. */
@@ -291,7 +277,6 @@ static void read_row(const json_t *object, struct cost_row *row)
     row->ms_high = document_read_number(object, "ms_high", 0.0);
     row->build_ms = document_read_number(object, "build_ms", -1.0);
     row->pixels_changed = document_read_count(object, "pixels_changed");
-    row->ids_changed = document_read_count(object, "ids_changed");
     read_price(json_object_get(object, "price"), &row->price);
     read_difference(json_object_get(object, "error"), &row->error);
     read_difference(json_object_get(object, "alone"), &row->alone);
@@ -312,7 +297,6 @@ static void read_report(const json_t *root, struct cost_report *report, char **s
     text(root, "clock", clock, sizeof clock);
     report->scene_hash = strtoull(hash, NULL, 16);
     report->complete = json_is_true(json_object_get(root, "complete"));
-    report->spent_ms = document_read_number(root, "seconds", 0.0) * 1e3;
     report->width = (uint32_t)document_read_count(root, "width");
     report->height = (uint32_t)document_read_count(root, "height");
     report->judged_width = (uint32_t)document_read_count(root, "judged_width");

@@ -129,19 +129,11 @@ static void say_it(cost_say *say, void *user, const char *format, ...)
     say(user, text);
 }
 
-static void say_spread(const struct cost_report *report, cost_say *say, void *user)
-{
-    const struct cost_price *price = &report->rows[0].price;
-    const struct sample_median *ratio = &price->ratio[report->clock];
-    say_it(
-        say, user,
-        "Measured beside itself the usual picture takes %.3f of itself (%.3f to %.3f, %u pairs).",
-        ratio->median, ratio->low, ratio->high, price->rounds);
-}
-
 void cost_say_method(const struct cost_report *report, cost_say *say, void *user)
 {
     static const char *const clocks[] = {"wall clock", "CPU time of all threads", "device time"};
+    const struct cost_price *price = &report->rows[0].price;
+    const struct sample_median *ratio = &price->ratio[report->clock];
     say_it(
         say, user,
         "Times: %s of a %u x %u picture; each setting and the usual ones in turns; medians, with "
@@ -158,7 +150,10 @@ void cost_say_method(const struct cost_report *report, cost_say *say, void *user
         "cheaper and more right.",
         report->judged_width, report->judged_height, report->reference_samples,
         report->reference_depth, report->reference_samples);
-    say_spread(report, say, user);
+    say_it(
+        say, user,
+        "Measured beside itself the usual picture takes %.3f of itself (%.3f to %.3f, %u pairs).",
+        ratio->median, ratio->low, ratio->high, price->rounds);
     if (!report->complete)
         say_it(say, user, "This report is not complete: it was stopped.");
 }
@@ -264,35 +259,26 @@ void cost_say_answers(const struct cost_report *report, cost_say *say, void *use
 
 /* ---- Text and Markdown ---- */
 
-typedef void put_row(FILE *to, const struct cost_column *columns, uint32_t count,
-                     const struct cost_cells *cells, const uint32_t *widths);
-
-static void put_text_row(FILE *to, const struct cost_column *columns, uint32_t count,
-                         const struct cost_cells *cells, const uint32_t *widths)
-{
-    for (uint32_t i = 0; i < count; ++i)
-        fprintf(to, columns[i].is_number ? "%*s  " : "%-*s  ", (int)widths[i], cells->text[i]);
-    fputc('\n', to);
-}
-
-static void put_markdown_row(FILE *to, const struct cost_column *columns, uint32_t count,
-                             const struct cost_cells *cells, const uint32_t *widths)
-{
-    (void)columns;
-    (void)widths;
-    fputc('|', to);
-    for (uint32_t i = 0; i < count; ++i)
-        fprintf(to, " %s |", cells->text[i]);
-    fputc('\n', to);
-}
-
 struct cost_table {
     FILE *to;
-    put_row *put;
+    bool markdown;
     const struct cost_column *columns;
     uint32_t count, widths[COST_COLUMNS_MAX], row_count;
     struct cost_cells rows[2 * COST_ROWS_MAX + 1];
 };
+
+static void put_row(const struct cost_table *table, const struct cost_cells *cells)
+{
+    fputs(table->markdown ? "|" : "", table->to);
+    for (uint32_t i = 0; i < table->count; ++i) {
+        if (table->markdown)
+            fprintf(table->to, " %s |", cells->text[i]);
+        else
+            fprintf(table->to, table->columns[i].is_number ? "%*s  " : "%-*s  ",
+                    (int)table->widths[i], cells->text[i]);
+    }
+    fputc('\n', table->to);
+}
 
 static void add(struct cost_table *table, const struct cost_cells *cells)
 {
@@ -316,8 +302,8 @@ static void add_head(struct cost_table *table, const struct cost_column *columns
 static void put_table(struct cost_table *table)
 {
     for (uint32_t i = 0; i < table->row_count; ++i) {
-        table->put(table->to, table->columns, table->count, &table->rows[i], table->widths);
-        if (i > 0 || table->put != put_markdown_row)
+        put_row(table, &table->rows[i]);
+        if (i > 0 || !table->markdown)
             continue;
         fputc('|', table->to);
         for (uint32_t k = 0; k < table->count; ++k)
@@ -329,14 +315,14 @@ static void put_table(struct cost_table *table)
     memset(table->widths, 0, sizeof table->widths);
 }
 
-static void put_tables(const struct cost_report *report, FILE *to, put_row *put_one)
+static void put_tables(const struct cost_report *report, FILE *to, bool markdown)
 {
     struct cost_table *table = calloc(1, sizeof *table);
     struct cost_cells cells;
     if (!table)
         return;
     table->to = to;
-    table->put = put_one;
+    table->markdown = markdown;
     add_head(table, cost_columns, COST_COLUMNS);
     for (uint32_t i = 0; i < report->row_count; ++i) {
         fill_row(report, &report->rows[i], &cells);
@@ -375,7 +361,7 @@ int cost_print_text(const struct cost *cost)
     char sentence[COST_SENTENCE_BYTES];
     cost_sentence(report, sentence);
     printf("%s\n\n", sentence);
-    put_tables(report, stdout, put_text_row);
+    put_tables(report, stdout, false);
     cost_say_method(report, say_plain, stdout);
     putchar('\n');
     cost_say_answers(report, say_plain, stdout);
@@ -388,7 +374,7 @@ void cost_write_markdown(FILE *to, const void *user)
     const struct cost_report *report = cost->report;
     fprintf(to, "    %s\n\nOn %s (%s), %.0f s.\n\n", cost->command, cli_shown(report->device),
             cli_shown(report->driver), report->spent_ms * 1e-3);
-    put_tables(report, to, put_markdown_row);
+    put_tables(report, to, true);
     cost_say_method(report, say_item, to);
     cost_say_answers(report, say_item, to);
 }
