@@ -263,20 +263,28 @@ static int usage(void)
     return 2;
 }
 
+/* Reads a whole number that is all of the text. */
+static bool read_number(const char *text, uint32_t *number)
+{
+    char behind;
+    return sscanf(text, "%u%c", number, &behind) == 1;
+}
+
 static bool read_option(struct sheet *sheet, const char *name, const char *value)
 {
+    char behind;
     if (strcmp(name, "-o") == 0)
         sheet->output = value;
     else if (strcmp(name, "--device") == 0)
         sheet->device_name = value;
     else if (strcmp(name, "--size") == 0)
-        return sscanf(value, "%ux%u", &sheet->width, &sheet->height) == 2;
+        return sscanf(value, "%ux%u%c", &sheet->width, &sheet->height, &behind) == 2;
     else if (strcmp(name, "--aa") == 0)
-        return sscanf(value, "%u", &sheet->samples) == 1;
+        return read_number(value, &sheet->samples);
     else if (strcmp(name, "--columns") == 0)
-        return sscanf(value, "%u", &sheet->columns) == 1;
+        return read_number(value, &sheet->columns);
     else if (strcmp(name, "--texture-limit") == 0)
-        return sscanf(value, "%u", &sheet->texture_limit) == 1;
+        return read_number(value, &sheet->texture_limit);
     else if (strcmp(name, "--check") == 0)
         return sheet->check = strcmp(value, "yes") == 0;
     else
@@ -321,10 +329,14 @@ static int make_sheet(struct sheet *sheet)
         calloc((size_t)sheet->sheet_width * sheet->sheet_height, 3 * sizeof *sheet->pixels);
     const whit_device_params params = {.selector = sheet->device_name};
     whit_result result = sheet->pixels ? WHIT_OK : WHIT_ERROR_MEMORY;
+    if (result == WHIT_ERROR_MEMORY)
+        on_message(NULL, WHIT_LOG_ERROR, "out of memory");
     if (result == WHIT_OK)
         result = whit_device_create(&params, &log_errors, &device);
     if (result == WHIT_OK && sheet->check)
         result = appearance_shader_init(&log_errors, &sheet->shader);
+    if (result == WHIT_ERROR_OUTPUT)
+        on_message(NULL, WHIT_LOG_ERROR, "no temporary file can be written: TMPDIR names a folder");
     if (result == WHIT_OK) {
         failed = fill_sheet(sheet, device);
         result =

@@ -11,6 +11,10 @@ refuse 2 "a bench that is not there" "did you mean .report" bench reprot
 refuse 2 "a folder without scenes" "nowhere/cube.json" bench report --quick --scenes "$OUT/nowhere"
 refuse 2 "JSON to a pipe" "tables are printed" bench report --json -
 refuse 2 "no runs" "from 1 to 99" bench report --runs 0
+refuse 2 "no such model" "nowhere.obj: cannot read" bench look "$OUT/nowhere.obj"
+check "before anything is measured" test ! -s "$OUT/stdout"
+expect 0 "scenes that are no checkout" bench frame glass --quick --scenes "$OUT/tmp"
+check "POV-Ray is left out, which is no error" test ! -s "$OUT/stderr"
 
 J=$OUT/files/figures.json
 expect 0 "the report, quick" bench report --quick --scenes "$SCENES" --json "$J"

@@ -66,4 +66,7 @@ sheet 0 "2 scenes, 0 failed" "$OUT/models"
 expect 2 "a folder without models" "$OUT/empty" -o "$OUT/sheet.png"
 check "is named" grep -q "empty: there is no scene and no model in it" "$OUT/stderr"
 expect 2 "no output" "$OUT/scenes"
+expect 2 "a size and more" "$CUBE" -o "$OUT/sheet.png" --size 96x72junk
+TMPDIR=$OUT/nowhere expect 1 "no folder for temporary files" "$CUBE" -o "$OUT/sheet.png" --size 96x72 --aa 1 --check yes
+check "says so" grep -q "error: no temporary file can be written" "$OUT/stderr"
 finish

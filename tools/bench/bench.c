@@ -38,32 +38,54 @@ whit_result bench_write(const struct bench *bench, const char *name, const void 
     return file_write_whole(&cli_log, path, data, bytes);
 }
 
-whit_result bench_find(const struct bench *bench, const char *name, char path[BENCH_PATH])
+static bool find_file(const char *name, char path[BENCH_PATH])
+{
+    char *whole = realpath(name, NULL);
+    if (whole)
+        snprintf(path, BENCH_PATH, "%s", whole);
+    free(whole);
+    return whole != NULL;
+}
+
+bool bench_find_beside(const struct bench *bench, const char *name, char path[BENCH_PATH])
 {
     /* Places relative to the program, for a build and an installation. */
     static const char *const beside[] = {"../scenes", "../../scenes", "../share/whit/scenes"};
-    const char *scenes = bench->ask.scenes ? bench->ask.scenes : "scenes";
     const char *slash = strrchr(bench->whit, '/');
+    char file[BENCH_PATH];
+    snprintf(file, sizeof file, "%s/%s", bench->ask.scenes ? bench->ask.scenes : "scenes", name);
+    bool found = find_file(file, path);
+    for (size_t i = 0; !found && slash && !bench->ask.scenes && i < 3; ++i) {
+        snprintf(file, sizeof file, "%.*s/%s/%s", (int)(slash - bench->whit), bench->whit,
+                 beside[i], name);
+        found = find_file(file, path);
+    }
+    return found;
+}
+
+whit_result bench_find(const struct bench *bench, const char *name, char path[BENCH_PATH])
+{
     bool is_file = strpbrk(name, "/.") != NULL;
     char file[BENCH_PATH];
-    snprintf(file, sizeof file, "%s/%s.json", scenes, name);
-    char *whole = realpath(is_file ? name : file, NULL);
-    for (size_t i = 0; !whole && !is_file && slash && !bench->ask.scenes && i < 3; ++i) {
-        snprintf(file, sizeof file, "%.*s/%s/%s.json", (int)(slash - bench->whit), bench->whit,
-                 beside[i], name);
-        whole = realpath(file, NULL);
+    snprintf(file, sizeof file, "%s.json", name);
+    if (is_file ? find_file(name, path) : bench_find_beside(bench, file, path))
+        return WHIT_OK;
+    if (is_file)
+        cli_error("%s: is not there", cli_shown(name));
+    else if (bench->ask.scenes)
+        cli_error("%s/%s: cannot read: %s", bench->ask.scenes, file, strerror(errno));
+    else
+        cli_error("%s is not here: --scenes FOLDER says where whit's scenes are", file);
+    return WHIT_ERROR_INPUT;
+}
+
+whit_result bench_look_for(const struct bench *bench)
+{
+    for (uint32_t i = 0; i < bench->ask.name_count; ++i) {
+        const char *path = bench->ask.names[i];
+        if (access(path, R_OK) != 0)
+            return CLI_FAIL(WHIT_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
     }
-    if (!whole) {
-        if (is_file)
-            cli_error("%s: is not there", cli_shown(name));
-        else if (bench->ask.scenes)
-            cli_error("%s: cannot read: %s", file, strerror(errno));
-        else
-            cli_error("%s.json is not here: --scenes FOLDER says where whit's scenes are", name);
-        return WHIT_ERROR_INPUT;
-    }
-    snprintf(path, BENCH_PATH, "%s", whole);
-    free(whole);
     return WHIT_OK;
 }
 

@@ -27,6 +27,10 @@ WHIT_CHECK whit_result bench_step(struct bench *bench);
    file. */
 WHIT_CHECK whit_result bench_find(const struct bench *bench, const char *name,
                                   char path[BENCH_PATH]);
+/* The same for any file, named from the folder of whit's scenes. False: it is not there. */
+bool bench_find_beside(const struct bench *bench, const char *name, char path[BENCH_PATH]);
+/* Checks, before anything is measured, that all named files can be read. */
+WHIT_CHECK whit_result bench_look_for(const struct bench *bench);
 void bench_file(const struct bench *bench, const char *name, char path[BENCH_PATH]);
 WHIT_CHECK whit_result bench_write(const struct bench *bench, const char *name, const void *data,
                                    size_t bytes);

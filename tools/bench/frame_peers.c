@@ -1,6 +1,5 @@
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "bench/frame_peers.h"
 #include "bench/process.h"
@@ -34,14 +33,8 @@ static bool ask_version(const struct bench *bench, const char *program, const ch
 static void find_pov(struct peers *peers, struct table *table)
 {
     static const char pictures[] = "glass, wine, flake, hollow, mesh";
-    char path[BENCH_PATH], line[128];
-    whit_result found = bench_find(table->bench, "34k", path);
-    char *slash = found == WHIT_OK ? strrchr(path, '/') : NULL;
-    if (slash)
-        *slash = 0;
-    snprintf(peers->pov_scenes, sizeof peers->pov_scenes, "%.1900s/../tests/peers/pov/scenes.sh",
-             slash ? path : ".");
-    if (access(peers->pov_scenes, R_OK) != 0) {
+    char line[128];
+    if (!bench_find_beside(table->bench, "../tests/peers/pov/scenes.sh", peers->pov_scenes)) {
         table_leave_out(table, pictures, "tests/peers/pov/scenes.sh is not beside whit's scenes");
     } else if (!ask_version(table->bench, "povray", "POV-Ray", line)) {
         table_leave_out(table, pictures, "povray is not installed (Debian: povray)");

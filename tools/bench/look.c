@@ -133,6 +133,9 @@ whit_result bench_look(struct bench *bench)
     if (ask->name_count == 0)
         return CLI_FAIL(WHIT_ERROR_USAGE,
                         "`whit bench look` takes the files of models that whit has not drawn yet");
+    whit_result result = bench_look_for(bench);
+    if (result != WHIT_OK)
+        return result;
     table_begin(&table, bench, "look", heads, true, OTHERS + ask->name_count * ask->runs);
     table_say(&table,
               "Times by the clock from the start of `whit view` until the window shows the first "
@@ -144,7 +147,7 @@ whit_result bench_look(struct bench *bench)
     bench_file(bench, "replay", look.replay);
     bench_file(bench, "states", look.states);
     unsetenv("MESA_SHADER_CACHE_DIR");
-    whit_result result = bench_write(bench, "replay", replay, sizeof replay - 1);
+    result = bench_write(bench, "replay", replay, sizeof replay - 1);
     if (result == WHIT_OK)
         result = fill_caches(&look);
     for (uint32_t i = 0; result == WHIT_OK && i < ask->name_count; ++i)

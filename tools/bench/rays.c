@@ -1,11 +1,9 @@
 /* `whit bench rays`: compares whit's kernels with Embree and the driver's own ray tracing on the
    same files of rays. */
 #include <ctype.h>
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "app/bvh/study_rays.h"
 #include "base/path.h"
@@ -236,13 +234,6 @@ static void say_how(struct table *table)
               "from the end where it is quicker.");
 }
 
-static whit_result look_for(const char *path)
-{
-    if (access(path, R_OK) == 0)
-        return WHIT_OK;
-    return CLI_FAIL(WHIT_ERROR_INPUT, "%s: cannot read: %s", path, strerror(errno));
-}
-
 whit_result bench_rays(struct bench *bench)
 {
     static const char *const heads[] = {"model, triangles", "rays",        "whit, ns",
@@ -250,9 +241,7 @@ whit_result bench_rays(struct bench *bench)
                                         "driver, ns",       "shuffled",    NULL};
     const struct bench_request *ask = &bench->ask;
     struct table table;
-    whit_result result = WHIT_OK;
-    for (uint32_t i = 0; result == WHIT_OK && i < ask->name_count; ++i)
-        result = look_for(ask->names[i]);
+    whit_result result = bench_look_for(bench);
     if (result != WHIT_OK)
         return result;
     uint32_t models = ask->name_count ? ask->name_count : 3;

@@ -112,23 +112,6 @@ static whit_result run_start(struct starting *s, const struct start *start)
     return result == WHIT_OK ? bench_step(s->bench) : result;
 }
 
-/* Finds the manifest that tools/second-driver writes, in the checkout of the scenes. */
-static void find_second(struct starting *s)
-{
-    char path[BENCH_PATH], manifest[BENCH_PATH + 64];
-    char *whole = NULL;
-    if (bench_find(s->bench, "34k", path) == WHIT_OK) {
-        *strrchr(path, '/') = 0;
-        snprintf(manifest, sizeof manifest, "%s/../build/second-driver/lvp_icd.json", path);
-        whole = realpath(manifest, NULL);
-    }
-    if (whole)
-        snprintf(s->second, sizeof s->second, "%s", whole);
-    else
-        table_leave_out(s->table, "the second driver", "./tools/second-driver has not unpacked it");
-    free(whole);
-}
-
 whit_result bench_start(struct bench *bench)
 {
     static const char *const heads[] = {"first picture", "time", "whit, ms", "beside, ms", NULL};
@@ -137,7 +120,8 @@ whit_result bench_start(struct bench *bench)
     table_begin(&table, bench, "start", heads, true, STARTS);
     table_say(&table, "Whole processes with empty caches but where they are filled. Figure: times "
                       "the time of the other whit.");
-    find_second(&s);
+    if (!bench_find_beside(bench, "../build/second-driver/lvp_icd.json", s.second))
+        table_leave_out(&table, "the second driver", "./tools/second-driver has not unpacked it");
     whit_result result = peers_find_against(&s.peers, &table);
     for (size_t i = 0; result == WHIT_OK && i < STARTS; ++i)
         result = run_start(&s, &starts[i]);
