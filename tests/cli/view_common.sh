@@ -24,15 +24,17 @@ read_states() {
 
 # steps: prints the replay of a table, and writes its expectations to $OUT/wanted and its commands to $OUT/commands. A row is
 #     NAME: EVENT, EVENT xN | FIELD = VALUE | FIELD > NUMBER | FIELD has PART | FIELD as OTHER | FIELD not as OTHER
+#         | FIELD is FIELD of OTHER
 # The events come first, each N times, then `still`, then `state NAME`. In that state the field is VALUE, or a larger
-# number, or contains PART, or is (or is not) as in the state OTHER. `NAME!` leaves out `still`. A line that begins with
+# number, or contains PART, or is (or is not) as in the state OTHER, or as another field of that. `NAME!` leaves out
+# `still`. A line that begins with
 # `|` continues the row before, and `do COMMAND` is what this script does as soon as the state has come; other lines are
 # events.
 steps() {
     awk -F ' *[|] *' -v wanted="$OUT/wanted" -v commands="$OUT/commands" '
         function expect(    i, at) {
             for (i = 2; i <= NF; ++i) {
-                at = match($i, / (=|>|has|as|not as)( |$)/) # 0: as_wanted fails
+                at = match($i, / (=|>|has|as|not as|is)( |$)/) # 0: as_wanted fails
                 print name "\t" substr($i, at + 1, RLENGTH - 2 + ($i ~ / =$/)) "\t" substr($i, 1, at - 1) "\t" \
                     substr($i, at + RLENGTH) >wanted
             }
@@ -46,7 +48,7 @@ steps() {
             name = head[1]
             count = split(substr($1, length(name) + 3), events, ", ")
             for (i = 1; i <= count; ++i) {
-                times = match(events[i], / x[0-9]+$/) ? substr(events[i], RSTART + 2) : 1
+                times = match(events[i], / x[0-9]+$/) ? substr(events[i], RSTART + 2) + 0 : 1
                 sub(/ x[0-9]+$/, "", events[i])
                 for (n = 0; n < times; ++n) print events[i]
             }
@@ -94,6 +96,7 @@ as_wanted() {
         '>') check "at $at: $field is more than $wanted ($has)" holds "$has > $wanted" ;;
         has) check "at $at: $field has \`$wanted\` ($has)" test "${has#*"$wanted"}" != "$has" ;;
         as) same "$field" "$wanted" "$at" ;;
+        is) is "$at" "$field" "$(value "${wanted#* of }" "${wanted% of *}")" ;;
         "not as") differs "$field" "$wanted" "$at" ;;
         *) check "at $at: what is \`$field$wanted\`?" false ;;
         esac

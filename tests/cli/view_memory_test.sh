@@ -4,14 +4,11 @@
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/view_common.sh"
 
-{
-    printf 'still\nstate before\npress N\n'
-    for level in 1 2 3 4 5 6 7 8 9 10 11 12 13; do echo "press J"; done
-    printf 'still\nstate boxes\npress N\npress N\nstill\nstate after\n'
-} >"$OUT/boxes"
-play "boxes" "$SCENES/34k.json" --size 240x160 <"$OUT/boxes"
-is boxes "keys.boxes of trees" "of meshes"
-is after "keys.boxes of trees" off
+play "boxes" "$SCENES/34k.json" --size 240x160 <<END
+before:
+boxes: press N, press J x13 | keys.boxes of trees = of meshes
+after: press N x2 | keys.boxes of trees = off
+END
 before=$(value before memory_kb.own)
 boxes=$(value boxes memory_kb.own)
 after=$(value after memory_kb.own)

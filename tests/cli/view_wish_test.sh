@@ -16,18 +16,12 @@ wished() {
     text=$4
     shift 4
     play "$*" "$scene" --size $SIZE --spend 0.1 --fresh "$@" <<END
-first! picture
-chosen! until wish.stage = measures, $event, press T, still
-elsewhere: press 1
+first! picture | wish.predicted_ms = 0
+chosen! until wish.stage = measures, $event, press T, still | scene = $measured | wish.stage = $text
+    | keys.traversal = sign | frame.whole = true | frame.drawn_words is words of chosen
+elsewhere: press 1 | wish.stage = $text
 left: press Equal
 END
-    is first wish.predicted_ms 0
-    is chosen scene "$measured"
-    is chosen wish.stage "$text"
-    is chosen "keys.traversal" sign
-    is chosen frame.whole true
-    is chosen frame.drawn_words "$(value chosen words)"
-    is elsewhere wish.stage "$text"
 }
 
 # chose NAME: the options in the text of the choice are the settings of the window.
