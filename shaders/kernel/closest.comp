@@ -1,21 +1,14 @@
 // Finds the closest hits of a generation's rays and lists them for shading; rays that miss get the
 // light of the sky.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/stage.glsl"
 #include "../bind/light.glsl"
 #include "../bind/media.glsl"
 #include "../bind/packet.glsl"
 #include "../bind/probe.glsl"
 #include "../bind/queues.glsl"
 #include "../bind/surface.glsl"
-
-layout(local_size_x_id = 0) in;
 
 #ifdef HOOKS
 #include "../hook/declare.glsl"

@@ -1,18 +1,11 @@
 // Calls the user's surface() and shade() for the hits of a generation. They have a kernel of their
 // own, before the one that shades, so that a changed file compiles fast.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/stage.glsl"
 #include "../bind/queues.glsl"
 #include "../hook/declare.glsl"
 #include "../hook/met.glsl"
-
-layout(local_size_x_id = 0) in;
 
 // Calls surface(). Fields that it may not change stay as they are, and so does the normal where it
 // gives none with a direction.

@@ -2,18 +2,11 @@
 // its own, so that a changed file compiles fast, and draws the last picture's pixels again without
 // tracing rays.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/stage.glsl"
 #include "../bind/probe.glsl"
 #include "../bind/queues.glsl"
 #include "../hook/declare.glsl"
-
-layout(local_size_x_id = 0) in;
 
 void main()
 {

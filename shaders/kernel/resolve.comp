@@ -1,17 +1,10 @@
 // Adds to the sum of each ray of a generation the sums of the rays that it called for, in a fixed
 // order. The sums of camera rays go to the pixels.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/stage.glsl"
 #include "../bind/probe.glsl"
 #include "../bind/queues.glsl"
-
-layout(local_size_x_id = 0) in;
 
 vec3 child_sum(uint id)
 {

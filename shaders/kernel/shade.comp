@@ -1,13 +1,8 @@
 // Shades the hits of a generation: adds the surfaces' own light to the sums, lists hits for the
 // lights, and makes the rays of the next generation.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/stage.glsl"
 #include "../bind/queues.glsl"
 #include "../bind/crossing.glsl"
 #include "../bind/hook.glsl"
@@ -21,8 +16,6 @@
 #include "../hook/scatter.glsl"
 #endif
 #include "../hook/met.glsl"
-
-layout(local_size_x_id = 0) in;
 
 // The rays that a hit calls for, in the order in which their light is added.
 struct Calls {

@@ -1,12 +1,7 @@
 // Adds the light of one light, with shadows, to the lit hits of a generation.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/stage.glsl"
 #include "../bind/queues.glsl"
 #include "../bind/arrival.glsl"
 #include "../bind/packet.glsl"
@@ -15,8 +10,6 @@
 #ifdef HOOKS
 #include "../hook/declare.glsl"
 #endif
-
-layout(local_size_x_id = 0) in;
 
 Lit lit_of[SPEC_PACKET_RAYS];
 

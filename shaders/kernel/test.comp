@@ -1,18 +1,11 @@
 // Runs the tests of a user's file: layer z of the dispatch is test z, with one invocation for each
 // seed. There is one row, as another_iteration() of lib/turn.glsl wants it.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/stage.glsl"
 #include "../bind/queues.glsl"
 #include "../hook/declare.glsl"
 #include "../hook/check.glsl"
-
-layout(local_size_x_id = 0) in;
 
 // Calls test `test` of the file. host/shader/tests.c writes the function that replaces this one.
 void run_test(uint test, uint seed)

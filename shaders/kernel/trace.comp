@@ -1,17 +1,10 @@
 // Traces a batch of rays to closest or any hits. It looks at geometry only: cut-outs count as
 // solid.
 #version 460
-#extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_shuffle : require
+#include "../bind/stage.glsl"
 #include "../bind/packet.glsl"
 #include "../lib/wide.glsl"
-
-layout(local_size_x_id = 0) in;
 
 layout(push_constant) uniform Batch { gpu_batch batch; };
 layout(set = 0, binding = BIND_RAYS, std430) readonly buffer RayBuffer { gpu_ray rays[]; };
