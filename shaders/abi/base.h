@@ -4,7 +4,6 @@
 #define ABI_BASE_H
 
 #ifdef __STDC_VERSION__
-#include <stddef.h>
 #include <stdint.h>
 typedef float gpu_float;
 typedef uint32_t gpu_uint;
@@ -14,8 +13,6 @@ typedef float gpu_vec3[3];
 typedef float gpu_vec4[4];
 #define GPU_ASSERT_SIZE(record, bytes)                                                             \
     _Static_assert(sizeof(struct record) == (bytes), "size of " #record);
-#define GPU_ASSERT_AT(record, field, bytes)                                                        \
-    _Static_assert(offsetof(struct record, field) == (bytes), "offset of " #record "." #field);
 #else
 #define gpu_float float
 #define gpu_uint  uint
@@ -24,7 +21,6 @@ typedef float gpu_vec4[4];
 #define gpu_vec3  vec3
 #define gpu_vec4  vec4
 #define GPU_ASSERT_SIZE(record, bytes)
-#define GPU_ASSERT_AT(record, field, bytes)
 #endif
 
 #endif

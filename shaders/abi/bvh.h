@@ -15,9 +15,6 @@ struct gpu_bvh_node {
                        the first node of a pair also the bits of BVH_AXIS_* */
 };
 GPU_ASSERT_SIZE(gpu_bvh_node, 32)
-GPU_ASSERT_AT(gpu_bvh_node, first, 12)
-GPU_ASSERT_AT(gpu_bvh_node, hi, 16)
-GPU_ASSERT_AT(gpu_bvh_node, count, 28)
 
 /* A ref: a node in the 32 bits that the traversal stack holds: count in the upper 4, first in the
    lower 28. */
@@ -50,11 +47,6 @@ struct gpu_triangle {
     gpu_uint shadow; /* optical depth of a filter: 3 x 10 bits, red lowest; see TRIANGLE_FILTER */
 };
 GPU_ASSERT_SIZE(gpu_triangle, 48)
-GPU_ASSERT_AT(gpu_triangle, primitive, 12)
-GPU_ASSERT_AT(gpu_triangle, v1, 16)
-GPU_ASSERT_AT(gpu_triangle, flags, 28)
-GPU_ASSERT_AT(gpu_triangle, v2, 32)
-GPU_ASSERT_AT(gpu_triangle, shadow, 44)
 
 #define TRIANGLE_CUTOUT    1u /* opacity decides whether it is hit */
 #define TRIANGLE_NO_SHADOW 2u /* casts no shadow: the surface of a light, or a shadow catcher */
@@ -104,8 +96,6 @@ struct gpu_instance {
     gpu_float pad2;
 };
 GPU_ASSERT_SIZE(gpu_instance, 128)
-GPU_ASSERT_AT(gpu_instance, root, 48)
-GPU_ASSERT_AT(gpu_instance, forward0, 64)
 
 /* A ray of `whit trace` and its answer. */
 struct gpu_ray {
@@ -124,7 +114,6 @@ struct gpu_hit {
     gpu_float ng_x, ng_y, ng_z; /* geometric normal in world space, not unit length */
 };
 GPU_ASSERT_SIZE(gpu_hit, 32)
-GPU_ASSERT_AT(gpu_hit, instance, 16)
 
 /* Counters of the traversals of one kind of ray: for a pixel, for a ray of a batch, or summed. */
 struct gpu_cost {
@@ -139,7 +128,6 @@ struct gpu_cost {
     gpu_uint pad;
 };
 GPU_ASSERT_SIZE(gpu_cost, 32)
-GPU_ASSERT_AT(gpu_cost, triangles, 16)
 
 /* Kinds of rays, with counters of their own. */
 #define RAY_PRIMARY    0u

@@ -62,9 +62,6 @@ struct gpu_material {
     gpu_uint tex_transmission;
 };
 GPU_ASSERT_SIZE(gpu_material, 160)
-GPU_ASSERT_AT(gpu_material, emission, 48)
-GPU_ASSERT_AT(gpu_material, normal_scale, 112)
-GPU_ASSERT_AT(gpu_material, tex_diffuse, 128)
 
 #define WRAP_REPEAT 0u
 #define WRAP_CLAMP  1u
@@ -92,7 +89,6 @@ struct gpu_texture {
     gpu_uint srgb; /* 1: red, green and blue are decoded by the table */
 };
 GPU_ASSERT_SIZE(gpu_texture, 48)
-GPU_ASSERT_AT(gpu_texture, offset, 16)
 
 #define LIGHT_POINT       0u
 #define LIGHT_DIRECTIONAL 1u
@@ -126,8 +122,6 @@ struct gpu_light {
     gpu_uint pad1;
 };
 GPU_ASSERT_SIZE(gpu_light, 96)
-GPU_ASSERT_AT(gpu_light, spot_edge, 48)
-GPU_ASSERT_AT(gpu_light, edge_u, 64)
 
 /* Data that all pixels of a picture share. A camera ray starts at `eye` (orthographic: moved in the
    picture plane) and goes along forward + x * right + y * up, with x and y in -1..1. For a panorama
@@ -177,7 +171,6 @@ struct gpu_frame {
     gpu_float scene_radius;
 };
 GPU_ASSERT_SIZE(gpu_frame, 240)
-GPU_ASSERT_AT(gpu_frame, ambient, 112)
 
 /* The fields of gpu_frame that differ between the views of a picture (SPEC_VIEWS). Its views lie
    one below the other, each in as many rows of 8x8 pixel blocks as it needs. */
@@ -195,7 +188,6 @@ struct gpu_view {
     gpu_uint pad0, pad1;
 };
 GPU_ASSERT_SIZE(gpu_view, 96)
-GPU_ASSERT_AT(gpu_view, lens_xy, 80)
 
 #define SHAPE_IS_GLASS 0x80000000u
 
@@ -317,8 +309,6 @@ struct gpu_probe_ray {
     gpu_uint light_sample; /* shadow rays: light * light_samples + sample */
 };
 GPU_ASSERT_SIZE(gpu_probe_ray, 128)
-GPU_ASSERT_AT(gpu_probe_ray, point, 64)
-GPU_ASSERT_AT(gpu_probe_ray, skip_primitive, 112)
 
 /* ---- What dbg(x) of a user's functions is, for that pixel ---- */
 
