@@ -1,7 +1,5 @@
-// Functions that those of a user's file may call besides each other. Lengths are in world units,
-// angles in radians, directions unit vectors of world space; light is radiance in linear RGB.
-//
-// lib/records.glsl has the records. hook/interface.glsl declares for users what they may call.
+// Functions that those of a user's file may call besides each other. hook/interface.glsl declares
+// them for users and says what they give; lib/records.glsl has the records.
 #ifndef HOOK_PRELUDE_GLSL
 #define HOOK_PRELUDE_GLSL
 
@@ -67,7 +65,6 @@ void report_hooks()
     }
 }
 
-// Value of slider `index` of the file.
 float slider(uint index)
 {
     return stored_sliders[min(index, SLIDERS_MAX - 1u)];
@@ -75,20 +72,16 @@ float slider(uint index)
 
 // ---- The ray ----
 
-// Where the ray starts.
 vec3 ray_origin()
 {
     return hook_ray.origin;
 }
 
-// The distance from there to the surface.
 float ray_distance()
 {
     return hook_hit.t;
 }
 
-// Number of surfaces between the camera and this one that sent the ray on; 0: the camera sees this
-// one.
 uint bounces()
 {
     return ray_bounces(hook_ray.steps);
@@ -96,7 +89,6 @@ uint bounces()
 
 // ---- The picture ----
 
-// The pixel, counted from 0, 0 at the top left.
 uvec2 pixel()
 {
     return hook_pixel;
@@ -107,13 +99,11 @@ uvec2 picture_size()
     return uvec2(frame.width, frame.height);
 }
 
-// Number of the sample within the pixel, from 0.
 uint sample_number()
 {
     return chunk.sample_index;
 }
 
-// Position of the camera.
 vec3 eye()
 {
     return frame.eye;
@@ -126,8 +116,6 @@ uint hash(uint x) // PCG, after Jarzynski and Olano 2020
     return x >> 22 ^ x;
 }
 
-// A random number from 0 to just below 1: it differs for each k, pixel, sample and ray, and is the
-// same in every run.
 float random(uint k)
 {
     uvec2 at = pixel();
@@ -140,7 +128,6 @@ float random(uint k)
 
 // ---- Light ----
 
-// The scene's ambient light, which comes from everywhere.
 vec3 ambient()
 {
     return frame.ambient;
@@ -158,8 +145,6 @@ gpu_light light_of(uint index)
     return fetch_light(min(index, frame.light_count - 1u));
 }
 
-// Number of points of the light that are tested: --light-samples for an area light, 1 for all
-// others.
 uint light_points(uint index)
 {
     if (frame.light_count == 0u)
@@ -167,7 +152,6 @@ uint light_points(uint index)
     return is_flat(light_of(index)) ? turns_each() : 1u;
 }
 
-// Point `point` of a light, as it is seen from a surface.
 Light light(uint index, uint point, Surface s)
 {
     if (frame.light_count == 0u)
@@ -179,7 +163,6 @@ Light light(uint index, uint point, Surface s)
 
 // ---- Rays ----
 
-// A point just off the surface, on the side that `dir` goes to, from which to start a ray.
 vec3 off_surface(Surface s, vec3 dir)
 {
     return offset_origin(s.p, s.error, dot(dir, s.ng) < 0.0 ? -s.ng : s.ng);
@@ -219,8 +202,6 @@ vec3 visible(Surface s, vec3 dir, float distance)
     return visible_from(off_surface(s, dir), dir, distance, skip_of(s), surrounding_absorption(hook_media));
 }
 
-// Finds the surface that a ray hits first, and its distance. False: it hits nothing, and `met` is
-// undefined.
 bool trace(vec3 origin, vec3 dir, out Surface met, out float distance)
 {
     Hit hit = traverse(TRAVERSE_CLOSEST, origin, dir, 0.0, FLOAT_LARGEST, frame.root, HIT_NONE, HIT_NONE);
@@ -241,7 +222,6 @@ bool trace(vec3 origin, vec3 dir, out Surface met, out float distance)
     return some;
 }
 
-// The light that a surface sends to `to_eye` because of one light, with shadows.
 vec3 lit_by(uint index, Surface s, Optics o, vec3 to_eye)
 {
     if (frame.light_count == 0u)
