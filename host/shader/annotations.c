@@ -19,8 +19,9 @@ struct line {
     uint32_t file, number;
 };
 
-static void complain(const struct line *line, const char *format, ...) WHIT_PRINTF(2, 3);
-static void complain(const struct line *line, const char *format, ...)
+/* Gives false, so that what failed can return it. */
+static bool complain(const struct line *line, const char *format, ...) WHIT_PRINTF(2, 3);
+static bool complain(const struct line *line, const char *format, ...)
 {
     char text[SHADER_REASON_BYTES];
     va_list arguments;
@@ -29,6 +30,7 @@ static void complain(const struct line *line, const char *format, ...)
     va_end(arguments);
     shader_error_add(line->log, line->errors, line->shader->text.files[line->file].name,
                      line->number, "%s", text);
+    return false;
 }
 
 /* Skips blanks. Whether a word without quotes follows. */
@@ -63,8 +65,8 @@ static bool next_word(struct line *line, char *text, size_t text_bytes)
 
 static bool ends(struct line *line)
 {
-    char rest[4];
-    return next_word(line, rest, sizeof rest) && !rest[0];
+    has_bare_word(line);
+    return line->at == line->end;
 }
 
 static bool is_name(const char *text)
@@ -83,8 +85,7 @@ static bool read_number(struct line *line, const char *what, double min, double 
     *number = strtod(word, &end);
     if (fits && end != word && !*end && *number >= min && *number <= max)
         return true;
-    complain(line, "%s is a number from %g to %g, not `%.60s`", what, min, max, word);
-    return false;
+    return complain(line, "%s is a number from %g to %g, not `%.60s`", what, min, max, word);
 }
 
 static bool read_slider_number(struct line *line, whit_slider *slider)
@@ -117,8 +118,7 @@ static bool read_slider_color(struct line *line, whit_slider *slider)
     char word[SHADER_NAME_BYTES];
     if (next_word(line, word, sizeof word) && shader_color_read(word, slider->value))
         return true;
-    complain(line, "a colour is written as #ffcc88, not `%.60s`", word);
-    return false;
+    return complain(line, "a colour is written as #ffcc88, not `%.60s`", word);
 }
 
 static bool read_slider_toggle(struct line *line, whit_slider *slider)
@@ -130,16 +130,14 @@ static bool read_slider_toggle(struct line *line, whit_slider *slider)
     slider->value[0] = on;
     if (fits && (on || strcmp(word, "off") == 0))
         return true;
-    complain(line, "a toggle is on or off, not `%.60s`", word);
-    return false;
+    return complain(line, "a toggle is on or off, not `%.60s`", word);
 }
 
 static bool read_slider_choice(struct line *line, whit_slider *slider,
                                struct shader_slider_text *texts)
 {
     if (!next_word(line, texts->text, sizeof texts->text) || !texts->text[0]) {
-        complain(line, "a choice names its words, as in `choice mode a,b`");
-        return false;
+        return complain(line, "a choice names its words, as in `choice mode a,b`");
     }
     slider->words = texts->words;
     for (char *word = texts->text; word;) {
@@ -147,14 +145,13 @@ static bool read_slider_choice(struct line *line, whit_slider *slider,
         if (comma)
             *comma = 0;
         if (!is_name(word) || slider->word_count == SHADER_WORDS_MAX) {
-            complain(line, "a choice has up to %d words of letters, digits and _, not `%.60s`",
-                     SHADER_WORDS_MAX, word);
-            return false;
+            return complain(line,
+                            "a choice has up to %d words of letters, digits and _, not `%.60s`",
+                            SHADER_WORDS_MAX, word);
         }
         for (uint32_t i = 0; i < slider->word_count; ++i) {
             if (strcmp(texts->words[i], word) == 0) {
-                complain(line, "a choice has the word `%s` twice", word);
-                return false;
+                return complain(line, "a choice has the word `%s` twice", word);
             }
         }
         texts->words[slider->word_count++] = word;
@@ -258,12 +255,10 @@ static bool is_new_name(const struct line *line, const char *name)
 {
     const whit_shader *shader = line->shader;
     if (is_keyword(name)) {
-        complain(line, "`%s` is a word of GLSL: another name is needed", name);
-        return false;
+        return complain(line, "`%s` is a word of GLSL: another name is needed", name);
     }
     if (is_own(name)) {
-        complain(line, "`%s` is a name of whit's: another name is needed", name);
-        return false;
+        return complain(line, "`%s` is a name of whit's: another name is needed", name);
     }
     for (uint32_t i = 0; i < shader->slider_count; ++i) {
         const whit_slider *slider = &shader->sliders[i];
@@ -273,15 +268,14 @@ static bool is_new_name(const struct line *line, const char *name)
         for (uint32_t k = 0; longer && k < slider->word_count; ++k)
             same = same || strcmp(slider->words[k], name + length + 1) == 0;
         if (same) {
-            complain(line, "there is a slider or a choice `%s` already, in line %u", name,
-                     shader->slider_texts[i].line);
-            return false;
+            return complain(line, "there is a slider or a choice `%s` already, in line %u", name,
+                            shader->slider_texts[i].line);
         }
     }
     for (uint32_t i = 0; i < shader->aov_count; ++i) {
         if (strcmp(shader->aovs[i].name, name) == 0) {
-            complain(line, "there is an aov `%s` already, in line %u", name, shader->aovs[i].line);
-            return false;
+            return complain(line, "there is an aov `%s` already, in line %u", name,
+                            shader->aovs[i].line);
         }
     }
     return true;
@@ -316,120 +310,111 @@ static bool stands_before_function(const struct line *line, const char *name)
     return true;
 }
 
-static void read_aov(struct line *line)
+/* Each of these reads one annotation, from behind its first word. False: it is wrong, which was
+   reported. */
+
+static bool read_aov(struct line *line)
 {
     whit_shader *shader = line->shader;
     char name[SHADER_NAME_BYTES];
-    if (!next_word(line, name, sizeof name) || !is_name(name) || !ends(line)) {
-        complain(line, "an aov has a name of letters, digits and _, and nothing more");
-        return;
-    }
+    if (!next_word(line, name, sizeof name) || !is_name(name) || !ends(line))
+        return complain(line, "an aov has a name of letters, digits and _, and nothing more");
     if (!is_new_name(line, name))
-        return;
-    if (shader->aov_count == SHADER_AOVS_MAX) {
-        complain(line, "a file has at most %d aovs", SHADER_AOVS_MAX);
-        return;
-    }
-    if (!stands_before_function(line, name)) {
-        complain(line, "`//@ aov %s` stands before `vec4 %s(Surface s)`, without const", name,
-                 name);
-        return;
-    }
+        return false;
+    if (shader->aov_count == SHADER_AOVS_MAX)
+        return complain(line, "a file has at most %d aovs", SHADER_AOVS_MAX);
+    if (!stands_before_function(line, name))
+        return complain(line, "`//@ aov %s` stands before `vec4 %s(Surface s)`, without const",
+                        name, name);
     struct shader_aov *aov = &shader->aovs[shader->aov_count];
     *aov = (struct shader_aov){.file = line->file, .line = line->number};
     memcpy(aov->name, name, sizeof name);
     shader->aov_names[shader->aov_count++] = aov->name;
+    return true;
 }
 
-static void read_slider(struct line *line, size_t kind)
+static bool read_slider(struct line *line, size_t kind)
 {
     whit_shader *shader = line->shader;
-    if (shader->value_count + kinds[kind].values > SHADER_SLIDERS_MAX) {
-        complain(line, "sliders have at most %d values together", SHADER_SLIDERS_MAX);
-        return;
-    }
+    if (shader->value_count + kinds[kind].values > SHADER_SLIDERS_MAX)
+        return complain(line, "sliders have at most %d values together", SHADER_SLIDERS_MAX);
     struct shader_slider_text *texts = &shader->slider_texts[shader->slider_count];
     whit_slider *slider = &shader->sliders[shader->slider_count];
     *slider = (whit_slider){.name = texts->name, .help = texts->help, .kind = kinds[kind].kind};
-    if (!next_word(line, texts->name, sizeof texts->name) || !is_name(texts->name)) {
-        complain(line, "a %s has a name of letters, digits and _, not `%.60s`", kinds[kind].word,
-                 texts->name);
-        return;
-    }
+    if (!next_word(line, texts->name, sizeof texts->name) || !is_name(texts->name))
+        return complain(line, "a %s has a name of letters, digits and _, not `%.60s`",
+                        kinds[kind].word, texts->name);
     if (!is_new_name(line, texts->name) || !read_slider_value(line, slider, texts) ||
         !are_new_words(line, slider))
-        return;
-    if (has_bare_word(line) || !next_word(line, texts->help, sizeof texts->help) || !ends(line)) {
-        complain(line,
-                 "behind the value of `%s` stands its help in quotes, up to %d bytes, and "
-                 "nothing more",
-                 texts->name, SHADER_HELP_BYTES - 1);
-        return;
-    }
+        return false;
+    if (has_bare_word(line) || !next_word(line, texts->help, sizeof texts->help) || !ends(line))
+        return complain(line,
+                        "behind the value of `%s` stands its help in quotes, up to %d bytes, and "
+                        "nothing more",
+                        texts->name, SHADER_HELP_BYTES - 1);
     slider->first = shader->value_count;
     texts->file = line->file;
     texts->line = line->number;
     shader->value_count += kinds[kind].values;
     shader->slider_count++;
+    return true;
 }
 
 /* Parses "X0 Y0 Z0 X1 Y1 Z1 ERROR [MATERIAL]". */
-static void read_box(struct line *line)
+static bool read_box(struct line *line)
 {
     struct shader_box box = {.file = line->file, .line = line->number}, *own = &line->shader->box;
     double number, sides[6];
     for (int i = 0; i < 6; ++i) {
         if (!read_number(line, "a side of the box", i < 3 ? -1e18 : sides[i - 3], 1e18, &sides[i]))
-            return;
+            return false;
         *(i < 3 ? &box.lo[i] : &box.hi[i - 3]) = (float)sides[i];
     }
     if (!read_number(line, "how far answers may be from the shape", 1e-18, 1e18, &number))
-        return;
+        return false;
     box.error = (float)number;
     if (!next_word(line, box.material, sizeof box.material) || !ends(line))
-        complain(line, "behind the box stands the name of a material, and nothing more");
-    else if (own->line)
-        complain(line, "there is a box already, in line %u", own->line);
-    else
-        *own = box;
+        return complain(line, "behind the box stands the name of a material, and nothing more");
+    if (own->line)
+        return complain(line, "there is a box already, in line %u", own->line);
+    *own = box;
+    return true;
 }
 
-static void read_fuel(struct line *line)
+static bool read_fuel(struct line *line)
 {
     double fuel;
     if (!read_number(line, "fuel", 1.0, SHADER_FUEL_MAX, &fuel))
-        return;
-    if (floor(fuel) != fuel) {
-        complain(line, "fuel is a whole number, not %g", fuel);
-    } else if (!ends(line)) {
-        complain(line, "behind the fuel stands nothing more");
-    } else if (line->shader->fuel_line) {
-        complain(line, "there is a fuel already, in line %u", line->shader->fuel_line);
-    } else {
-        line->shader->fuel = (uint32_t)fuel;
-        line->shader->fuel_line = line->number;
-    }
+        return false;
+    if (floor(fuel) != fuel)
+        return complain(line, "fuel is a whole number, not %g", fuel);
+    if (!ends(line))
+        return complain(line, "behind the fuel stands nothing more");
+    if (line->shader->fuel_line)
+        return complain(line, "there is a fuel already, in line %u", line->shader->fuel_line);
+    line->shader->fuel = (uint32_t)fuel;
+    line->shader->fuel_line = line->number;
+    return true;
 }
 
-static void read_version(struct line *line)
+static bool read_version(struct line *line)
 {
     char word[SHADER_NAME_BYTES], own[16];
     snprintf(own, sizeof own, "%d", WHIT_SHADER_VERSION);
     if (!next_word(line, word, sizeof word) || strcmp(word, own) != 0)
-        complain(line,
-                 "the file is for version `%.60s` of what hooks may use; this whit has %s, "
-                 "the first one: see docs/shaders.md",
-                 word, own);
-    else if (!ends(line))
-        complain(line, "behind the version stands nothing more");
+        return complain(line,
+                        "the file is for version `%.60s` of what hooks may use; this whit has %s, "
+                        "the first one: see docs/shaders.md",
+                        word, own);
+    return ends(line) || complain(line, "behind the version stands nothing more");
 }
 
 /* Checks a line `//@ test`; tests.c reads the function that follows. */
-static void read_test_mark(struct line *line)
+static bool read_test_mark(struct line *line)
 {
-    if (!ends(line))
-        complain(line, "behind `//@ test` stands nothing more: the function follows in the next "
-                       "line");
+    return ends(line) ||
+           complain(line, "behind `//@ test` stands nothing more: the function follows in the next "
+                          "line");
 }
 
 static const char *const expected_words[] = {
@@ -455,59 +440,52 @@ static bool read_expected(struct line *line, uint32_t *what)
     return false;
 }
 
-static void read_expectation(struct line *line)
+static bool read_expectation(struct line *line)
 {
     whit_shader *shader = line->shader;
     uint32_t what;
-    if (!read_expected(line, &what)) {
-        complain(line, "an expectation is `//@ expect WHAT == base`, with ids, pixels, rays, "
-                       "rays.camera, rays.shadow, rays.reflected or rays.refracted for WHAT");
-        return;
-    }
-    if (shader->expectation_count == SHADER_EXPECTATIONS_MAX) {
-        complain(line, "a file expects at most %d things", SHADER_EXPECTATIONS_MAX);
-        return;
-    }
+    if (!read_expected(line, &what))
+        return complain(line,
+                        "an expectation is `//@ expect WHAT == base`, with ids, pixels, rays, "
+                        "rays.camera, rays.shadow, rays.reflected or rays.refracted for WHAT");
+    if (shader->expectation_count == SHADER_EXPECTATIONS_MAX)
+        return complain(line, "a file expects at most %d things", SHADER_EXPECTATIONS_MAX);
     shader->expectations[shader->expectation_count++] =
         (whit_shader_expectation){(whit_expected)what, expected_words[what],
                                   shader->text.files[line->file].name, line->number};
+    return true;
 }
 
-static void read_line(struct line *line)
+static bool read_line(struct line *line)
 {
+    static const struct {
+        const char *word;
+        bool (*read)(struct line *line);
+    } annotations[] = {{"whit", read_version},   {"fuel", read_fuel},
+                       {"aov", read_aov},        {"box", read_box},
+                       {"test", read_test_mark}, {"expect", read_expectation}};
     char word[SHADER_NAME_BYTES];
     bool fits = next_word(line, word, sizeof word);
     for (size_t i = 0; fits && i < sizeof kinds / sizeof *kinds; ++i) {
-        if (strcmp(word, kinds[i].word) == 0) {
-            read_slider(line, i);
-            return;
-        }
+        if (strcmp(word, kinds[i].word) == 0)
+            return read_slider(line, i);
     }
-    if (fits && strcmp(word, "fuel") == 0)
-        read_fuel(line);
-    else if (fits && strcmp(word, "whit") == 0)
-        read_version(line);
-    else if (fits && strcmp(word, "aov") == 0)
-        read_aov(line);
-    else if (fits && strcmp(word, "box") == 0)
-        read_box(line);
-    else if (fits && strcmp(word, "test") == 0)
-        read_test_mark(line);
-    else if (fits && strcmp(word, "expect") == 0)
-        read_expectation(line);
-    else
-        complain(line,
-                 "`//@ %.60s` is none of whit, slider, color, toggle, choice, fuel, aov, "
-                 "box, test, expect",
-                 word);
+    for (size_t i = 0; fits && i < sizeof annotations / sizeof *annotations; ++i) {
+        if (strcmp(word, annotations[i].word) == 0)
+            return annotations[i].read(line);
+    }
+    return complain(line,
+                    "`//@ %.60s` is none of whit, slider, color, toggle, choice, fuel, aov, box, "
+                    "test, expect",
+                    word);
 }
 
 whit_result shader_annotations_read(const whit_log *log, whit_shader *shader,
                                     struct shader_errors *errors)
 {
     struct shader_errors own = {0};
+    bool fine = true;
     errors = errors ? errors : &own;
-    uint32_t before = errors->count + errors->more;
     for (uint32_t f = 0; f < shader->text.file_count; ++f) {
         struct scan scan;
         scan_begin(&scan, shader->text.files[f].text, shader->text.files[f].bytes);
@@ -517,8 +495,8 @@ whit_result shader_annotations_read(const whit_log *log, whit_shader *shader,
                 continue;
             const char *at = scan.annotation, *end = at + strcspn(at, "\n");
             struct line line = {log, shader, errors, at, end, f, scan.token_line};
-            read_line(&line);
+            fine = read_line(&line) && fine;
         }
     }
-    return errors->count + errors->more == before ? WHIT_OK : WHIT_ERROR_INPUT;
+    return fine ? WHIT_OK : WHIT_ERROR_INPUT;
 }

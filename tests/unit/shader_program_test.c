@@ -215,6 +215,8 @@ TEST(lines_that_are_none_are_refused_with_their_line)
                  {"fuel 1111111111111111111111111111111111111111111111111111111111111111",
                   "not `111111111111111111111111111111111111111111111111111111111111`"},
                  {"fuel 10 20", "nothing more"},
+                 {"fuel 10 \"\" 20", "nothing more"},
+                 {"test \"\"", "nothing more"},
                  {"whit 2", "this whit has 1"},
                  {"whit 1 x", "nothing more"},
                  {"box 0.15 0 0 0.14 1 1 0.01", "from 0.15"},
