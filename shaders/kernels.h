@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum kernel {
+enum {
     KERNEL_TRACE,
     KERNEL_CLOSEST,
     KERNEL_SHADE,

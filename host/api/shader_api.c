@@ -252,42 +252,42 @@ void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info)
                                .fuel = shader->trust ? 0 : shader->fuel,
                                .hash = shader_text_hash(&shader->text) ^
                                        (shader->stages ? shader->stages->hash : 0)};
-    for (uint32_t i = 0; i < SHADER_KERNEL_COUNT; ++i) {
+    for (uint32_t i = 0; i < HOOK_KERNEL_COUNT; ++i) {
         info->kernel_count += shader->codes[i].words != NULL;
         info->instructions += shader->codes[i].instructions;
     }
 }
 
-/* The kernel of the index-th code that the shader has; SHADER_KERNEL_COUNT: there is none. */
 bool whit_shader_keep_sliders(const whit_shader *shader, char *sliders)
 {
     return shader_sliders_keep(shader, sliders);
 }
 
-static enum shader_kernel find_kernel(const whit_shader *shader, uint32_t index)
+/* The kernel of the index-th code that the shader has; HOOK_KERNEL_COUNT: there is none. */
+static enum hook_kernel find_kernel(const whit_shader *shader, uint32_t index)
 {
     uint32_t kernel = 0;
-    while (kernel < SHADER_KERNEL_COUNT && (!shader->codes[kernel].words || index-- > 0))
+    while (kernel < HOOK_KERNEL_COUNT && (!shader->codes[kernel].words || index-- > 0))
         kernel++;
-    return (enum shader_kernel)kernel;
+    return (enum hook_kernel)kernel;
 }
 
 const char *whit_shader_kernel(const whit_shader *shader, uint32_t index, const uint32_t **words,
                                size_t *bytes)
 {
-    enum shader_kernel kernel = find_kernel(shader, index);
-    if (kernel == SHADER_KERNEL_COUNT)
+    enum hook_kernel kernel = find_kernel(shader, index);
+    if (kernel == HOOK_KERNEL_COUNT)
         return NULL;
     *words = shader->codes[kernel].words;
     *bytes = shader->codes[kernel].bytes;
-    return shader_kernel_name(kernel);
+    return hook_kernels[kernel].name;
 }
 
 char *whit_shader_kernel_text(const whit_shader *shader, uint32_t index)
 {
     const whit_log silent = log_or_silence(NULL);
-    enum shader_kernel kernel = find_kernel(shader, index);
-    return kernel == SHADER_KERNEL_COUNT ? NULL : shader_program_expand(&silent, shader, kernel);
+    enum hook_kernel kernel = find_kernel(shader, index);
+    return kernel == HOOK_KERNEL_COUNT ? NULL : shader_program_expand(&silent, shader, kernel);
 }
 
 char *whit_spirv_text(const uint32_t *words, size_t bytes)

@@ -85,7 +85,7 @@ whit_result renderer_run_tests(struct renderer *renderer, whit_check_result *res
     struct buffer *found = NULL;
     struct pass pass = {0};
     double start_ms = clock_ms();
-    if (!shader || !shader->codes[SHADER_KERNEL_TEST].words) {
+    if (!shader || !shader->codes[HOOK_KERNEL_TEST].words) {
         log_error(&renderer->log, "there are no tests of a shader, or they were not compiled");
         return WHIT_ERROR_USAGE;
     }

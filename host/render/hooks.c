@@ -103,10 +103,7 @@ uint32_t hooks_dbg_count(const struct target *target)
 
 const struct shader_code *hooks_code(const struct target *target, const char *kernel)
 {
-    const whit_shader *shader = target->renderer->params.shader;
-    const struct shader_code *code =
-        hooks_dbg_count(target) ? shader_dbg_code_of(shader, kernel) : NULL;
-    return code ? code : shader_code_of(shader, kernel);
+    return shader_code_of(target->renderer->params.shader, kernel, hooks_dbg_count(target) > 0);
 }
 
 uint32_t hooks_aov_count(const struct target *target)

@@ -34,7 +34,7 @@ static whit_result list_kernel(struct renderer *renderer, bool make,
     return result;
 }
 
-static whit_result list_stages(struct renderer *renderer, bool make, whit_kernel *kernels,
+static whit_result list_stages(struct renderer *renderer, bool make, whit_kernel *list,
                                uint32_t *count)
 {
     struct stages_job job;
@@ -47,16 +47,16 @@ static whit_result list_stages(struct renderer *renderer, bool make, whit_kernel
             continue;
         params.asks_statistics = true;
         bool defers = variant_defers(&params, &deferred);
-        result = list_kernel(renderer, make, &params, false, &kernels[(*count)++]);
+        result = list_kernel(renderer, make, &params, false, &list[(*count)++]);
         params.spec = (const uint32_t *)&deferred;
         if (result == WHIT_OK && defers)
-            result = list_kernel(renderer, make, &params, true, &kernels[(*count)++]);
+            result = list_kernel(renderer, make, &params, true, &list[(*count)++]);
     }
     return result;
 }
 
 whit_result render_list_kernels(const whit_log *log, struct device *device, struct accel *accel,
-                                const whit_renderer_params *params, bool make, whit_kernel *kernels,
+                                const whit_renderer_params *params, bool make, whit_kernel *list,
                                 uint32_t *count)
 {
     struct renderer renderer = {0};
@@ -69,7 +69,7 @@ whit_result render_list_kernels(const whit_log *log, struct device *device, stru
     if (result == WHIT_OK)
         result = frame_fill(&renderer);
     if (result == WHIT_OK)
-        result = list_stages(&renderer, make, kernels, count);
+        result = list_stages(&renderer, make, list, count);
     renderer_finish(&renderer);
     return result;
 }

@@ -33,7 +33,7 @@ static void describe(const struct renderer *renderer, struct kept_view *of)
    statistics. */
 static bool functions_trace(const whit_shader *shader)
 {
-    return ((shader->codes[SHADER_KERNEL_POST].reaches | shader->codes[SHADER_KERNEL_AOV].reaches) &
+    return ((shader->codes[HOOK_KERNEL_POST].reaches | shader->codes[HOOK_KERNEL_AOV].reaches) &
             SHADER_REACHES_RAYS) != 0;
 }
 

@@ -86,9 +86,9 @@ struct shader_compiler *shader_compiler_create(const whit_log *log,
 void shader_compiler_destroy(struct shader_compiler *compiler); /* NULL is fine */
 
 /* Compiles a kernel with the user's text in place of hook/user.glsl, which stays if `text` is NULL
-   or empty. WHIT_ERROR_INPUT: what is wrong is in `errors` (may be NULL) and logged, each as
-   "FILE:line: reason". WHIT_ERROR_MEMORY, _CANCELLED, _USAGE (a sandbox is required but not
-   available, or there is no such kernel). *code is zeroed after an error; free it by
+   or empty. WHIT_ERROR_INPUT: what is wrong (also, that there is no such kernel) is in `errors`
+   (may be NULL) and logged, each as "FILE:line: reason". WHIT_ERROR_MEMORY, _CANCELLED, _USAGE (a
+   sandbox is required but not available). *code is zeroed after an error; free it by
    shader_code_free. */
 WHIT_CHECK whit_result shader_compile(struct shader_compiler *compiler,
                                       const struct shader_text *text,

@@ -190,9 +190,9 @@ static void check_module(struct compilation *c, struct spv_module *m)
     char why[SHADER_REASON_BYTES];
     if (c->question->user_at == c->question->user_end)
         return;
-    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        if (spv_op(m->words + at) == OP_NAME && spv_length(m->words + at) > 2)
-            check_global(c, m, m->words + at);
+    for (const uint32_t *words = spv_step(m, NULL); words; words = spv_step(m, words)) {
+        if (spv_op(words) == OP_NAME && spv_length(words) > 2)
+            check_global(c, m, words);
     }
     uint32_t capability = refuse_capability(m, &name);
     if (!capability || c->answer.error_count)

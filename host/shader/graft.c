@@ -31,9 +31,7 @@ void graft_put(struct graft *g, struct spv_words *to, const uint32_t *words)
 static const char **read_names(const struct spv_module *m)
 {
     const char **names = array_alloc_zeroed(m->bound + (size_t)1, sizeof *names);
-    for (size_t at = SPV_HEADER_WORDS; names && at < m->functions_at;
-         at += spv_length(m->words + at)) {
-        const uint32_t *words = m->words + at;
+    for (const uint32_t *words = spv_step(m, NULL); names && words; words = spv_step(m, words)) {
         if (spv_op(words) == OP_NAME && spv_length(words) > 2 && words[1] < m->bound &&
             memchr(words + 2, 0, 4 * (size_t)(spv_length(words) - 2)))
             names[words[1]] = (const char *)(words + 2);
@@ -50,9 +48,9 @@ bool graft_same_name(const char *a, const char *b)
 
 static bool has_decoration(const struct spv_module *m, uint32_t id)
 {
-    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        uint32_t op = spv_op(m->words + at);
-        if ((op == OP_DECORATE || op == OP_MEMBER_DECORATE) && m->words[at + 1] == id)
+    for (const uint32_t *words = spv_step(m, NULL); words; words = spv_step(m, words)) {
+        uint32_t op = spv_op(words);
+        if ((op == OP_DECORATE || op == OP_MEMBER_DECORATE) && words[1] == id)
             return true;
     }
     return false;
@@ -74,9 +72,7 @@ static uint32_t find_same(const struct graft *g, const uint32_t *asked, uint32_t
 {
     const struct spv_module *base = &g->base;
     bool record = spv_op(asked) == OP_TYPE_STRUCT;
-    for (size_t at = SPV_HEADER_WORDS; at < base->functions_at;
-         at += spv_length(base->words + at)) {
-        const uint32_t *words = base->words + at;
+    for (const uint32_t *words = spv_step(base, NULL); words; words = spv_step(base, words)) {
         if (is_same(words, asked, result) &&
             (!record ||
              (graft_same_name(name, g->base_names[words[1]]) && !has_decoration(base, words[1]))))

@@ -6,6 +6,7 @@
 #include "base/array.h"
 #include "shader/graft.h"
 #include "shader/refuse.h"
+#include "whit/whit_shader.h"
 
 struct function {
     uint32_t id; /* id in the linked kernel */
@@ -45,9 +46,8 @@ static void take_variable(struct link *l, const uint32_t *words)
 static void take_globals(struct link *l)
 {
     const struct spv_module *user = &l->g.user;
-    for (size_t at = SPV_HEADER_WORDS; !l->g.why && !l->g.base.failed && at < user->functions_at;
-         at += spv_length(user->words + at)) {
-        const uint32_t *words = user->words + at;
+    for (const uint32_t *words = spv_step(user, NULL); words && !l->g.why && !l->g.base.failed;
+         words = spv_step(user, words)) {
         uint32_t op = spv_op(words), id = spv_result(user, words);
         if (op == OP_VARIABLE)
             take_variable(l, words);
@@ -81,24 +81,31 @@ static struct function *find_function(const struct link *l, uint32_t id)
 static uint32_t find_named(const struct link *l, const char *name)
 {
     const struct spv_module *base = &l->g.base;
-    for (size_t at = spv_next_function(base, base->functions_at); at < base->count;
-         at = spv_next_function(base, at + spv_function_words(base, at))) {
-        if (graft_same_name(l->g.base_names[base->words[at + 2]], name))
-            return base->words[at + 2];
+    for (const uint32_t *words = spv_next_function(base, NULL); words;
+         words = spv_next_function(base, words)) {
+        if (graft_same_name(l->g.base_names[words[2]], name))
+            return words[2];
     }
     return 0;
 }
 
-static bool is_hook(const char *name)
+bool link_is_hook(const char *name)
 {
-    static const char *const hooks[] = {"camera(",    "surface(",  "shade(", "scatter(",
-                                        "miss(",      "post(",     "aov(",   "run_test(",
-                                        "intersect(", "shape_box("};
-    for (size_t i = 0; i < sizeof hooks / sizeof *hooks; ++i) {
-        if (strncmp(name, hooks[i], strlen(hooks[i])) == 0)
+    size_t length = strcspn(name, "(");
+    for (int hook = 0; hook < WHIT_HOOKS; ++hook) {
+        const char *own = whit_hook_name((whit_hook)hook);
+        if (strlen(own) == length && strncmp(own, name, length) == 0)
             return true;
     }
     return false;
+}
+
+/* Whether a function of the user's module takes the place of one in the kernel: hooks do, and what
+   whit generates from the user's file. */
+static bool takes_place(const char *name)
+{
+    return name && (link_is_hook(name) || strncmp(name, "run_test(", 9) == 0 ||
+                    strncmp(name, "shape_box(", 10) == 0);
 }
 
 /* main() of the user's module initializes the user's global variables. */
@@ -112,27 +119,25 @@ static bool is_main(const char *name)
 static void name_functions(struct link *l)
 {
     const struct spv_module *user = &l->g.user;
-    for (size_t at = spv_next_function(user, user->functions_at); at < user->count;
-         at = spv_next_function(user, at + spv_function_words(user, at))) {
-        const uint32_t *words = user->words + at;
+    for (const uint32_t *words = spv_next_function(user, NULL); words;
+         words = spv_next_function(user, words)) {
         const char *name = l->g.user_names[words[2]];
         const char *file = refuse_file(user, words);
         if (is_main(name))
             l->g.ids[words[2]] = find_named(l, "begin_user(");
-        else if (name && (file || is_hook(name)))
+        else if (name && (file || takes_place(name)))
             l->g.ids[words[2]] = find_named(l, name);
         if (!l->g.ids[words[2]] && (is_main(name) || graft_same_name(file, "hook/interface.glsl")))
             l->g.why = "what hook/interface.glsl declares is not in the kernel";
     }
 }
 
-/* Whether the function is copied from the user's module. aov(), shape_box() and run_test() are,
-   too: whit generates them from the user's file. */
+/* Whether the function is copied from the user's module. */
 static bool is_taken(const struct link *l, const uint32_t *words)
 {
     bool own = refuse_file(&l->g.user, words) != NULL;
     const char *name = l->g.user_names[words[2]];
-    return !own || l->g.ids[words[2]] == 0 || is_main(name) || (name && is_hook(name));
+    return !own || l->g.ids[words[2]] == 0 || is_main(name) || takes_place(name);
 }
 
 static bool is_long_switch(const struct spv_module *m, const uint32_t *words)
@@ -153,18 +158,16 @@ static bool is_call_of_all(const struct link *l, const uint32_t *words)
 static void map_functions(struct link *l)
 {
     const struct spv_module *user = &l->g.user;
-    for (size_t at = spv_next_function(user, user->functions_at); at < user->count;
-         at = spv_next_function(user, at)) {
-        size_t end = at + spv_function_words(user, at);
-        bool taken = is_taken(l, user->words + at);
-        for (; at < end && !l->g.why && !l->g.base.failed; at += spv_length(user->words + at)) {
-            const uint32_t *words = user->words + at;
+    for (const uint32_t *function = spv_next_function(user, NULL); function;
+         function = spv_next_function(user, function)) {
+        const uint32_t *words = function, *end = words + spv_function_words(user, words);
+        bool taken = is_taken(l, function);
+        for (; words < end && !l->g.why && !l->g.base.failed; words += spv_length(words)) {
             if (spv_op(words) == OP_SWITCH && is_long_switch(user, words))
                 l->g.why = "a switch is over integers of 32 bits";
             else if (taken && !spv_is_remark(spv_op(words)) && !is_call_of_all(l, words))
                 graft_put(&l->g, &l->mapped, words);
         }
-        at = end;
     }
 }
 
@@ -179,11 +182,10 @@ static void list_functions(struct link *l)
         end++;
         add_function(l, l->mapped.words[at + 2], l->mapped.words + at, end - at);
     }
-    for (size_t at = spv_next_function(base, base->functions_at); at < base->count;
-         at = spv_next_function(base, at + spv_function_words(base, at))) {
-        const uint32_t *words = base->words + at;
+    for (const uint32_t *words = spv_next_function(base, NULL); words;
+         words = spv_next_function(base, words)) {
         if (!find_function(l, words[2]))
-            add_function(l, words[2], words, spv_function_words(base, at));
+            add_function(l, words[2], words, spv_function_words(base, words));
     }
 }
 
@@ -204,18 +206,17 @@ static void reach(struct link *l, uint32_t id)
 static void reach_all(struct link *l)
 {
     const struct spv_module *base = &l->g.base;
-    for (size_t at = SPV_HEADER_WORDS; at < base->functions_at;
-         at += spv_length(base->words + at)) {
-        if (spv_op(base->words + at) == OP_ENTRY_POINT)
-            reach(l, base->words[at + 2]);
+    for (const uint32_t *words = spv_step(base, NULL); words; words = spv_step(base, words)) {
+        if (spv_op(words) == OP_ENTRY_POINT)
+            reach(l, words[2]);
     }
-    for (size_t at = spv_next_function(base, base->functions_at); at < base->count;
-         at = spv_next_function(base, at + spv_function_words(base, at))) {
-        const struct function *function = find_function(l, base->words[at + 2]);
-        uint32_t count = spv_function_words(base, at);
-        bool stays = function && function->words == base->words + at && function->reached;
-        for (uint32_t i = 0; !stays && i < count; i += spv_length(base->words + at + i)) {
-            uint32_t id = spv_result(base, base->words + at + i);
+    for (const uint32_t *words = spv_next_function(base, NULL); words;
+         words = spv_next_function(base, words)) {
+        const struct function *function = find_function(l, words[2]);
+        uint32_t count = spv_function_words(base, words);
+        bool stays = function && function->words == words && function->reached;
+        for (uint32_t i = 0; !stays && i < count; i += spv_length(words + i)) {
+            uint32_t id = spv_result(base, words + i);
             l->dropped[id] = l->dropped[id] || (id && !(function && function->reached && i == 0));
         }
     }
@@ -225,8 +226,8 @@ static void reach_all(struct link *l)
 
 static bool has_capability(const struct spv_module *m, uint32_t capability)
 {
-    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        if (spv_op(m->words + at) == OP_CAPABILITY && m->words[at + 1] == capability)
+    for (const uint32_t *words = spv_step(m, NULL); words; words = spv_step(m, words)) {
+        if (spv_op(words) == OP_CAPABILITY && words[1] == capability)
             return true;
     }
     return false;
@@ -235,9 +236,7 @@ static bool has_capability(const struct spv_module *m, uint32_t capability)
 static void put_capabilities(struct link *l, struct spv_words *out)
 {
     const struct spv_module *user = &l->g.user;
-    for (size_t at = SPV_HEADER_WORDS; at < user->functions_at;
-         at += spv_length(user->words + at)) {
-        const uint32_t *words = user->words + at;
+    for (const uint32_t *words = spv_step(user, NULL); words; words = spv_step(user, words)) {
         if (spv_op(words) == OP_CAPABILITY && !has_capability(&l->g.base, words[1]))
             spv_put(&l->g.base, out, words, 2);
     }
@@ -247,9 +246,7 @@ static void put_capabilities(struct link *l, struct spv_words *out)
 static void put_globals(struct link *l, struct spv_words *out)
 {
     const struct spv_module *base = &l->g.base;
-    for (size_t at = SPV_HEADER_WORDS; at < base->functions_at;
-         at += spv_length(base->words + at)) {
-        const uint32_t *words = base->words + at;
+    for (const uint32_t *words = spv_step(base, NULL); words; words = spv_step(base, words)) {
         uint32_t op = spv_op(words), length = spv_length(words), first = out->count;
         bool decorates = op == OP_DECORATE || op == OP_MEMBER_DECORATE;
         if (spv_is_remark(op) || (decorates && words[1] < base->bound && l->dropped[words[1]]))

@@ -13,4 +13,7 @@
 struct spv_words link_kernel(const uint32_t *kernel, size_t kernel_words, const uint32_t *user,
                              size_t count, const char *own, const char **why);
 
+/* Whether a function is a hook, by its name in GLSL or as glslang writes it ("miss(vf3;"). */
+bool link_is_hook(const char *name);
+
 #endif

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "shader/expand.h"
+#include "shader/link.h"
 #include "shader/scan.h"
-#include "whit/whit_shader.h"
 
 enum { NOBODY = 2, LINE_BYTES = 2048 };
 
@@ -203,27 +203,6 @@ static void plain_name(const char *mangled, char *out, size_t out_bytes)
     snprintf(out, out_bytes, "%.*s", (int)strcspn(mangled, "( "), mangled);
 }
 
-static bool is_hook(const char *name)
-{
-    for (int hook = 0; hook < WHIT_HOOKS; ++hook) {
-        if (strcmp(name, whit_hook_name((whit_hook)hook)) == 0)
-            return true;
-    }
-    return false;
-}
-
-static bool has_body(const char *text, const char *name)
-{
-    struct scan scan;
-    struct scan_functions functions = {.braces = 0};
-    scan_begin(&scan, text, strlen(text));
-    while (scan_next_function(&scan, &functions)) {
-        if (strcmp(functions.name, name) == 0)
-            return true;
-    }
-    return false;
-}
-
 /* Errors about functions, which glslang reports after all text, with their names in the next
    line. */
 static bool take_function(struct glslang_answer *answer, const struct glslang_question *question,
@@ -244,10 +223,10 @@ static bool take_function(struct glslang_answer *answer, const struct glslang_qu
         snprintf(why, sizeof why,
                  "%s calls %s, which leads back to it: there is no recursion in GLSL", name,
                  called);
-    else if (is_hook(name) && !has_body(preprocessed, name))
+    else if (link_is_hook(name) && !scan_finds(preprocessed, strlen(preprocessed), name, NULL))
         snprintf(why, sizeof why,
                  "the preprocessor leaves no function %.16s: an #if or a macro hides it", name);
-    else if (is_hook(name))
+    else if (link_is_hook(name))
         snprintf(why, sizeof why,
                  "%.16s has other parameters than whit's own: `whit shader new %.16s` prints it",
                  name, name);

@@ -58,8 +58,7 @@ const char *spv_string(const struct spv_module *m, uint32_t id)
 
 const char *spv_name(const struct spv_module *m, uint32_t id)
 {
-    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        const uint32_t *words = m->words + at;
+    for (const uint32_t *words = spv_step(m, NULL); words; words = spv_step(m, words)) {
         if (spv_op(words) == OP_NAME && spv_length(words) > 2 && words[1] == id)
             return (const char *)(words + 2);
     }
@@ -169,19 +168,27 @@ void spv_finish(struct spv_module *m)
     *m = (struct spv_module){0};
 }
 
-uint32_t spv_function_words(const struct spv_module *m, size_t at)
+const uint32_t *spv_step(const struct spv_module *m, const uint32_t *words)
 {
-    size_t end = at;
-    while (end < m->count && spv_op(m->words + end) != OP_FUNCTION_END)
-        end += spv_length(m->words + end);
-    return (uint32_t)((end < m->count ? end + 1 : end) - at);
+    const uint32_t *next = words ? words + spv_length(words) : m->words + SPV_HEADER_WORDS;
+    return next < m->words + m->functions_at ? next : NULL;
 }
 
-size_t spv_next_function(const struct spv_module *m, size_t at)
+const uint32_t *spv_next_function(const struct spv_module *m, const uint32_t *function)
 {
-    while (at < m->count && spv_op(m->words + at) != OP_FUNCTION)
-        at += spv_length(m->words + at);
-    return at;
+    const uint32_t *end = m->words + m->count,
+                   *at = function ? function + spv_length(function) : m->words + m->functions_at;
+    while (at < end && spv_op(at) != OP_FUNCTION)
+        at += spv_length(at);
+    return at < end ? at : NULL;
+}
+
+uint32_t spv_function_words(const struct spv_module *m, const uint32_t *function)
+{
+    const uint32_t *end = m->words + m->count, *at = function;
+    while (at < end && spv_op(at) != OP_FUNCTION_END)
+        at += spv_length(at);
+    return (uint32_t)((at < end ? at + 1 : at) - function);
 }
 
 /* --- what stands where in an instruction ------------------------------------------------------ */
@@ -273,131 +280,85 @@ void spv_put(struct spv_module *m, struct spv_words *to, const uint32_t *words, 
     to->count += count;
 }
 
-static void put_instruction(struct spv_module *m, struct spv_words *to, uint32_t op,
-                            const uint32_t *operands, uint32_t count)
-{
-    uint32_t head = spv_head(op, count + 1);
-    spv_put(m, to, &head, 1);
-    spv_put(m, to, operands, count);
-}
-
 void spv_emit(struct spv_module *m, uint32_t op, const uint32_t *operands, uint32_t count)
 {
-    put_instruction(m, &m->body, op, operands, count);
+    uint32_t head = spv_head(op, count + 1);
+    spv_put(m, &m->body, &head, 1);
+    spv_put(m, &m->body, operands, count);
 }
 
-static uint32_t find_global(const struct spv_module *m, uint32_t op, uint32_t width, uint32_t sign)
-{
-    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        const uint32_t *words = m->words + at;
-        if (spv_op(words) == op && (op == OP_TYPE_BOOL || (words[2] == width && words[3] == sign)))
-            return words[1];
-    }
-    return 0;
-}
-
-static uint32_t keep_constant(struct spv_module *m, struct spv_constant constant)
-{
-    if (!ARRAY_PUSH(m->constants, m->constant_count, m->constant_capacity, constant))
-        m->failed = true;
-    return constant.id;
-}
-
-/* Finds an id in m->constants, by type and value. A `type` of the following keys, which are no ids,
-   says what kind of lookup was cached. */
-static uint32_t find_constant(const struct spv_module *m, uint32_t type, uint32_t value)
-{
-    for (uint32_t i = 0; i < m->constant_count; ++i) {
-        if (m->constants[i].type == type && m->constants[i].value == value)
-            return m->constants[i].id;
-    }
-    return 0;
-}
-
+/* A `type` of these keys, which are no ids, says what kind of lookup was cached. */
 #define LOOKED_UP  UINT32_MAX
 #define NULL_OF    (UINT32_MAX - 1)
 #define POINTER_TO (UINT32_MAX - 2)
 #define TRUE_OF    (UINT32_MAX - 3)
 
-static uint32_t find_or_add(struct spv_module *m, uint32_t op)
+/* The id of the module's type that `words` define, but for its id; 0: there is none. */
+static uint32_t find_type(const struct spv_module *m, const uint32_t *words)
 {
-    uint32_t id = find_constant(m, LOOKED_UP, op);
-    if (id)
-        return id;
-    id = find_global(m, op, 32, 0);
-    if (!id) {
-        id = m->next_id++;
-        const uint32_t operands[] = {id, 32, 0};
-        put_instruction(m, &m->globals, op, operands, op == OP_TYPE_BOOL ? 1 : 3);
-    }
-    return keep_constant(m, (struct spv_constant){LOOKED_UP, op, id});
-}
-
-uint32_t spv_uint(struct spv_module *m)
-{
-    return find_or_add(m, OP_TYPE_INT);
-}
-
-uint32_t spv_bool(struct spv_module *m)
-{
-    return find_or_add(m, OP_TYPE_BOOL);
-}
-
-uint32_t spv_constant(struct spv_module *m, uint32_t type, uint32_t value)
-{
-    uint32_t id = find_constant(m, type, value);
-    if (id)
-        return id;
-    id = m->next_id++;
-    const uint32_t operands[] = {type, id, value};
-    put_instruction(m, &m->globals, OP_CONSTANT, operands, 3);
-    return keep_constant(m, (struct spv_constant){type, value, id});
-}
-
-/* Adds a constant that has nothing but a type, if it is not there yet. */
-static uint32_t plain_constant(struct spv_module *m, uint32_t key, uint32_t op, uint32_t type)
-{
-    uint32_t id = find_constant(m, key, type);
-    if (id)
-        return id;
-    id = m->next_id++;
-    const uint32_t operands[] = {type, id};
-    put_instruction(m, &m->globals, op, operands, 2);
-    return keep_constant(m, (struct spv_constant){key, type, id});
-}
-
-uint32_t spv_null(struct spv_module *m, uint32_t type)
-{
-    return plain_constant(m, NULL_OF, OP_CONSTANT_NULL, type);
-}
-
-uint32_t spv_true(struct spv_module *m, uint32_t type)
-{
-    return plain_constant(m, TRUE_OF, OP_CONSTANT_TRUE, type);
-}
-
-static uint32_t find_pointer(const struct spv_module *m, uint32_t type)
-{
-    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        const uint32_t *words = m->words + at;
-        if (spv_op(words) == OP_TYPE_POINTER && words[2] == STORAGE_FUNCTION && words[3] == type)
-            return words[1];
+    size_t bytes = (spv_length(words) - 2) * sizeof *words;
+    for (const uint32_t *at = spv_step(m, NULL); at; at = spv_step(m, at)) {
+        if (at[0] == words[0] && memcmp(at + 2, words + 2, bytes) == 0)
+            return at[1];
     }
     return 0;
 }
 
+/* The id that is kept in m->constants under a type and a value, or that of the instruction `words`,
+   which is added, with an id in place of its 0. A type (its first word is that 0) is not added if
+   the module has it. */
+static uint32_t find_or_add(struct spv_module *m, uint32_t type, uint32_t value, uint32_t *words)
+{
+    for (uint32_t i = 0; i < m->constant_count; ++i) {
+        if (m->constants[i].type == type && m->constants[i].value == value)
+            return m->constants[i].id;
+    }
+    bool defines_type = words[1] == 0;
+    uint32_t id = defines_type ? find_type(m, words) : 0;
+    if (!id) {
+        id = words[defines_type ? 1 : 2] = m->next_id++;
+        spv_put(m, &m->globals, words, spv_length(words));
+    }
+    const struct spv_constant constant = {type, value, id};
+    if (!ARRAY_PUSH(m->constants, m->constant_count, m->constant_capacity, constant))
+        m->failed = true;
+    return id;
+}
+
+uint32_t spv_uint(struct spv_module *m)
+{
+    uint32_t words[] = {spv_head(OP_TYPE_INT, 4), 0, 32, 0};
+    return find_or_add(m, LOOKED_UP, OP_TYPE_INT, words);
+}
+
+uint32_t spv_bool(struct spv_module *m)
+{
+    uint32_t words[] = {spv_head(OP_TYPE_BOOL, 2), 0};
+    return find_or_add(m, LOOKED_UP, OP_TYPE_BOOL, words);
+}
+
+uint32_t spv_constant(struct spv_module *m, uint32_t type, uint32_t value)
+{
+    uint32_t words[] = {spv_head(OP_CONSTANT, 4), type, 0, value};
+    return find_or_add(m, type, value, words);
+}
+
+uint32_t spv_null(struct spv_module *m, uint32_t type)
+{
+    uint32_t words[] = {spv_head(OP_CONSTANT_NULL, 3), type, 0};
+    return find_or_add(m, NULL_OF, type, words);
+}
+
+uint32_t spv_true(struct spv_module *m, uint32_t type)
+{
+    uint32_t words[] = {spv_head(OP_CONSTANT_TRUE, 3), type, 0};
+    return find_or_add(m, TRUE_OF, type, words);
+}
+
 uint32_t spv_pointer(struct spv_module *m, uint32_t type)
 {
-    uint32_t id = find_constant(m, POINTER_TO, type);
-    if (id)
-        return id;
-    id = find_pointer(m, type);
-    if (!id) {
-        id = m->next_id++;
-        const uint32_t operands[] = {id, STORAGE_FUNCTION, type};
-        put_instruction(m, &m->globals, OP_TYPE_POINTER, operands, 3);
-    }
-    return keep_constant(m, (struct spv_constant){POINTER_TO, type, id});
+    uint32_t words[] = {spv_head(OP_TYPE_POINTER, 4), 0, STORAGE_FUNCTION, type};
+    return find_or_add(m, POINTER_TO, type, words);
 }
 
 bool spv_is_remark(uint32_t op)
@@ -418,21 +379,22 @@ static bool begins_as_zero(const struct spv_module *m, const uint32_t *words)
    variables. */
 static void put_zeroed(struct spv_module *m, struct spv_words *out, const uint32_t *words)
 {
-    const uint32_t zero[] = {spv_def(m, words[1])[3], m->next_id++};
-    const uint32_t variable[] = {words[1], words[2], words[3], zero[1]};
-    put_instruction(m, out, OP_CONSTANT_NULL, zero, 2);
-    put_instruction(m, out, OP_VARIABLE, variable, 4);
+    uint32_t type = spv_def(m, words[1])[3], zero = m->next_id++;
+    const uint32_t constant[] = {spv_head(OP_CONSTANT_NULL, 3), type, zero};
+    const uint32_t variable[] = {spv_head(OP_VARIABLE, 5), words[1], words[2], words[3], zero};
+    spv_put(m, out, constant, 3);
+    spv_put(m, out, variable, 5);
 }
 
 struct spv_words spv_write(struct spv_module *m, bool keeps_remarks)
 {
     struct spv_words out = {0};
     spv_put(m, &out, m->words, SPV_HEADER_WORDS);
-    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        if (begins_as_zero(m, m->words + at))
-            put_zeroed(m, &out, m->words + at);
-        else if (keeps_remarks || !spv_is_remark(spv_op(m->words + at)))
-            spv_put(m, &out, m->words + at, spv_length(m->words + at));
+    for (const uint32_t *words = spv_step(m, NULL); words; words = spv_step(m, words)) {
+        if (begins_as_zero(m, words))
+            put_zeroed(m, &out, words);
+        else if (keeps_remarks || !spv_is_remark(spv_op(words)))
+            spv_put(m, &out, words, spv_length(words));
     }
     spv_put(m, &out, m->globals.words, m->globals.count);
     for (uint32_t at = 0; at < m->body.count; at += spv_length(m->body.words + at)) {

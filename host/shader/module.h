@@ -60,10 +60,12 @@ bool spv_follow(struct spv_module *m, const uint32_t *instruction);
 const uint32_t *spv_def(const struct spv_module *m, uint32_t id);
 /* The result id of an instruction; 0: it has none. */
 uint32_t spv_result(const struct spv_module *m, const uint32_t *words);
-/* The first word of the next function from `at` on (m->count: there is none), and its length in
-   words. */
-size_t spv_next_function(const struct spv_module *m, size_t at);
-uint32_t spv_function_words(const struct spv_module *m, size_t at);
+/* The first instruction in front of all functions, or with `words` the one behind it; NULL: there
+   is none. The same for OpFunctions. */
+const uint32_t *spv_step(const struct spv_module *m, const uint32_t *words);
+const uint32_t *spv_next_function(const struct spv_module *m, const uint32_t *function);
+/* The length of a function in words. */
+uint32_t spv_function_words(const struct spv_module *m, const uint32_t *function);
 /* Whether word `i` of an instruction (0: the first) is an id. */
 bool spv_is_id(const uint32_t *words, uint32_t i);
 /* Whether it is a debug instruction, which does nothing. */

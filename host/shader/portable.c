@@ -197,10 +197,10 @@ static uint32_t find_function(const struct portable *p, const struct stand_in *r
     snprintf(name, sizeof name, "portable_%s(", row->function);
     for (uint32_t i = spv_op(words) == OP_EXT_INST ? 5 : 3; i < spv_length(words); ++i)
         append_type(&p->g.base, spv_type_of(&p->g.base, words[i]), name);
-    for (size_t at = spv_next_function(user, user->functions_at); at < user->count;
-         at = spv_next_function(user, at + spv_function_words(user, at))) {
-        if (graft_same_name(p->g.user_names[user->words[at + 2]], name))
-            return user->words[at + 2];
+    for (const uint32_t *function = spv_next_function(user, NULL); function;
+         function = spv_next_function(user, function)) {
+        if (graft_same_name(p->g.user_names[function[2]], name))
+            return function[2];
     }
     return 0;
 }
@@ -220,8 +220,7 @@ static void want(struct portable *p, uint32_t function)
 
 static uint32_t spec_id(const struct spv_module *m, uint32_t id)
 {
-    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        const uint32_t *words = m->words + at;
+    for (const uint32_t *words = spv_step(m, NULL); words; words = spv_step(m, words)) {
         if (spv_op(words) == OP_DECORATE && words[1] == id && words[2] == DECORATION_SPEC_ID)
             return words[3];
     }
@@ -281,10 +280,10 @@ static void take_functions(struct portable *p)
 {
     const struct spv_module *user = &p->g.user;
     for (uint32_t i = 0; i < p->wanted_count && !p->g.base.failed; ++i) {
-        size_t at = (size_t)(spv_def(user, p->wanted[i]) - user->words);
-        size_t end = at + spv_function_words(user, at);
-        for (; at < end && !p->g.base.failed; at += spv_length(user->words + at))
-            take_instruction(p, user->words + at);
+        const uint32_t *words = spv_def(user, p->wanted[i]);
+        const uint32_t *end = words + spv_function_words(user, words);
+        for (; words < end && !p->g.base.failed; words += spv_length(words))
+            take_instruction(p, words);
     }
 }
 
@@ -332,28 +331,22 @@ static bool replace_all(struct portable *p)
     return true;
 }
 
-/* A float control for 32-bit floats: a capability and an execution mode of SPIR-V 1.4. */
-struct mode {
-    bool asked;
-    uint32_t capability, mode;
-};
-
-enum { MODES = 3 };
-
-static void list_modes(const struct portable_params *params, struct mode modes[MODES])
+/* Puts the float controls for 32-bit floats that are asked for (SPIR-V 1.4): their capabilities,
+   or, with an entry point, its execution modes. */
+static void put_controls(struct portable *p, struct spv_words *out, uint32_t entry)
 {
-    modes[0] = (struct mode){params->asks_denormals, 4464, 4459};
-    modes[1] = (struct mode){params->asks_special, 4466, 4461};
-    modes[2] = (struct mode){params->asks_nearest, 4467, 4462};
-}
-
-static void put_modes(struct spv_module *m, struct spv_words *out, const struct mode modes[MODES],
-                      uint32_t entry)
-{
-    for (int i = 0; i < MODES; ++i) {
-        const uint32_t mode[] = {spv_head(OP_EXECUTION_MODE, 4), entry, modes[i].mode, 32};
-        if (modes[i].asked)
-            spv_put(m, out, mode, 4);
+    const struct portable_params *params = p->params;
+    const struct {
+        bool asked;
+        uint32_t capability, mode;
+    } controls[] = {{params->asks_denormals, 4464, 4459},
+                    {params->asks_special, 4466, 4461},
+                    {params->asks_nearest, 4467, 4462}};
+    for (size_t i = 0; i < sizeof controls / sizeof *controls; ++i) {
+        const uint32_t capability[] = {spv_head(OP_CAPABILITY, 2), controls[i].capability};
+        const uint32_t mode[] = {spv_head(OP_EXECUTION_MODE, 4), entry, controls[i].mode, 32};
+        if (controls[i].asked)
+            spv_put(&p->g.base, out, entry ? mode : capability, entry ? 4 : 2);
     }
 }
 
@@ -361,23 +354,15 @@ static struct spv_words write_module(struct portable *p)
 {
     struct spv_module *base = &p->g.base;
     struct spv_words out = {0};
-    struct mode modes[MODES];
-    list_modes(p->params, modes);
     spv_put(base, &out, base->words, SPV_HEADER_WORDS);
-    for (int i = 0; i < MODES; ++i) {
-        const uint32_t capability[] = {spv_head(OP_CAPABILITY, 2), modes[i].capability};
-        if (modes[i].asked)
-            spv_put(base, &out, capability, 2);
-    }
-    for (size_t at = SPV_HEADER_WORDS; at < base->functions_at;
-         at += spv_length(base->words + at)) {
-        const uint32_t *words = base->words + at;
+    put_controls(p, &out, 0);
+    for (const uint32_t *words = spv_step(base, NULL); words; words = spv_step(base, words)) {
         bool decorates = spv_op(words) == OP_DECORATE && words[1] < base->bound;
         if (spv_is_remark(spv_op(words)) || (decorates && p->replaced[words[1]]))
             continue;
         spv_put(base, &out, words, spv_length(words));
         if (spv_op(words) == OP_ENTRY_POINT)
-            put_modes(base, &out, modes, words[2]);
+            put_controls(p, &out, words[2]);
     }
     spv_put(base, &out, base->globals.words, base->globals.count);
     spv_put(base, &out, base->body.words, base->body.count);

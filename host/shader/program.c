@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "kernels.h"
 #include "shader/annotations.h"
 #include "shader/sliders.h"
 #include "whit/whit_program.h"
@@ -26,70 +25,59 @@ static const char *const hook_names[WHIT_HOOKS] = {
 
 #define BIT(hook) (1u << WHIT_HOOK_##hook)
 
-/* In the order of enum hook_kernel. camera() is in several kernels, as each of these stages makes
+/* camera() is in several kernels, as each of these stages makes
    the camera rays anew. */
 static const struct {
     const char *path;
     uint32_t hooks;
-} kernel_table[SHADER_KERNEL_COUNT] = {
-    [SHADER_KERNEL_CLOSEST] = {"kernel/closest.comp", BIT(CAMERA)},
-    [SHADER_KERNEL_SHADE] = {"kernel/shade.comp", BIT(CAMERA) | BIT(SCATTER)},
-    [SHADER_KERNEL_SHADOW] = {"kernel/shadow.comp", BIT(CAMERA)},
-    [SHADER_KERNEL_RESOLVE] = {"kernel/resolve.comp", 0},
-    [SHADER_KERNEL_MISS] = {"kernel/miss.comp", BIT(MISS)},
-    [SHADER_KERNEL_SHAPE] = {"kernel/shape.comp", BIT(INTERSECT)},
-    [SHADER_KERNEL_HIT] = {"kernel/hit.comp", BIT(SURFACE) | BIT(SHADE)},
-    [SHADER_KERNEL_AOV] = {"kernel/aov.comp", BIT(AOV)},
-    [SHADER_KERNEL_POST] = {"kernel/post.comp", BIT(POST)},
-    [SHADER_KERNEL_TEST] = {"kernel/test.comp", 0},
+} kernel_table[HOOK_KERNEL_COUNT] = {
+    [HOOK_KERNEL_CLOSEST] = {"kernel/closest.comp", BIT(CAMERA)},
+    [HOOK_KERNEL_SHADE] = {"kernel/shade.comp", BIT(CAMERA) | BIT(SCATTER)},
+    [HOOK_KERNEL_SHADOW] = {"kernel/shadow.comp", BIT(CAMERA)},
+    [HOOK_KERNEL_RESOLVE] = {"kernel/resolve.comp", 0},
+    [HOOK_KERNEL_MISS] = {"kernel/miss.comp", BIT(MISS)},
+    [HOOK_KERNEL_SHAPE] = {"kernel/shape.comp", BIT(INTERSECT)},
+    [HOOK_KERNEL_HIT] = {"kernel/hit.comp", BIT(SURFACE) | BIT(SHADE)},
+    [HOOK_KERNEL_AOV] = {"kernel/aov.comp", BIT(AOV)},
+    [HOOK_KERNEL_POST] = {"kernel/post.comp", BIT(POST)},
+    [HOOK_KERNEL_TEST] = {"kernel/test.comp", 0},
 };
-_Static_assert((int)SHADER_KERNEL_COUNT == (int)HOOK_KERNEL_COUNT &&
-                   (int)SHADER_KERNEL_POST == (int)HOOK_KERNEL_POST,
-               "the same kernels");
 
 const char *whit_hook_name(whit_hook hook)
 {
     return (unsigned)hook < WHIT_HOOKS ? hook_names[hook] : "";
 }
 
-const char *shader_kernel_name(enum shader_kernel kernel)
-{
-    return hook_kernels[kernel].name;
-}
-
-/* The index of a kernel by name; SHADER_KERNEL_COUNT: hooks are no part of it. */
+/* The index of a kernel by name; HOOK_KERNEL_COUNT: hooks are no part of it. */
 static uint32_t find_kernel(const char *name)
 {
     uint32_t i = 0;
-    while (i < SHADER_KERNEL_COUNT && strcmp(hook_kernels[i].name, name) != 0)
+    while (i < HOOK_KERNEL_COUNT && strcmp(hook_kernels[i].name, name) != 0)
         i++;
     return i;
 }
 
-const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel)
+const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel, bool dbg)
 {
     uint32_t i = find_kernel(kernel);
-    return shader && i < SHADER_KERNEL_COUNT && shader->codes[i].words ? &shader->codes[i] : NULL;
-}
-
-const struct shader_code *shader_dbg_code_of(const whit_shader *shader, const char *kernel)
-{
-    uint32_t i = find_kernel(kernel);
-    return shader && i < SHADER_KERNEL_COUNT && shader->dbg_codes[i].words ? &shader->dbg_codes[i]
-                                                                           : NULL;
+    if (!shader || i == HOOK_KERNEL_COUNT)
+        return NULL;
+    const struct shader_code *code = &shader->dbg_codes[i];
+    code = dbg && code->words ? code : &shader->codes[i];
+    return code->words ? code : NULL;
 }
 
 bool shader_is_hooked(const whit_shader *shader, const char *kernel)
 {
     uint32_t i = find_kernel(kernel);
-    return shader && i < SHADER_KERNEL_COUNT && (kernel_table[i].hooks & shader->hooks);
+    return shader && i < HOOK_KERNEL_COUNT && (kernel_table[i].hooks & shader->hooks);
 }
 
 uint32_t shader_reaches(const whit_shader *shader)
 {
     /* Stages of the user's own may call functions that reach.c does not know. */
     uint32_t reaches = shader->stages ? SHADER_REACHES_ALL : 0;
-    for (uint32_t i = 0; i < SHADER_KERNEL_TEST; ++i)
+    for (uint32_t i = 0; i < HOOK_KERNEL_TEST; ++i)
         reaches |= shader->codes[i].reaches;
     return reaches;
 }
@@ -98,7 +86,7 @@ uint32_t shader_reaches(const whit_shader *shader)
 bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **file, uint32_t *line)
 {
     uint32_t kernel = number >> 16, loop = number & 0xffff;
-    if (kernel >= SHADER_KERNEL_COUNT || loop == 0 || loop > shader->codes[kernel].loop_count)
+    if (kernel >= HOOK_KERNEL_COUNT || loop == 0 || loop > shader->codes[kernel].loop_count)
         return false;
     const struct shader_loop *found = &shader->codes[kernel].loops[loop - 1];
     *file = shader->text.files[found->file].name;
@@ -108,7 +96,7 @@ bool shader_find_loop(const whit_shader *shader, uint32_t number, const char **f
 
 bool shader_find_open(const whit_shader *shader, uint32_t number, const char **file, uint32_t *line)
 {
-    for (uint32_t i = 0; i < SHADER_KERNEL_COUNT * SHADER_OPENS_MAX; ++i) {
+    for (uint32_t i = 0; i < HOOK_KERNEL_COUNT * SHADER_OPENS_MAX; ++i) {
         const struct shader_open *open =
             &shader->codes[i / SHADER_OPENS_MAX].opens[i % SHADER_OPENS_MAX];
         if (!number || open->number != number || open->file >= shader->text.file_count)
@@ -210,7 +198,8 @@ static bool make_text(const whit_shader *shader, enum kernel_text kind, struct s
     return fine;
 }
 
-static bool parts_init(const whit_shader *shader, enum kernel_text kind, struct kernel_parts *parts)
+static bool parts_init(const whit_log *log, const whit_shader *shader, enum kernel_text kind,
+                       struct kernel_parts *parts)
 {
     *parts = (struct kernel_parts){.kind = kind};
     char *sliders = shader_sliders_declare(shader);
@@ -222,7 +211,10 @@ static bool parts_init(const whit_shader *shader, enum kernel_text kind, struct 
     free(box);
     free(aovs);
     free(sliders);
-    return parts->declared && make_text(shader, kind, &parts->user);
+    bool fine = parts->declared && make_text(shader, kind, &parts->user);
+    if (!fine)
+        log_error(log, "no memory for the text of a kernel");
+    return fine;
 }
 
 static void parts_finish(struct kernel_parts *parts)
@@ -269,23 +261,6 @@ static bool kernel_request_init(const whit_log *log, const whit_shader *shader,
     return of->text != NULL;
 }
 
-/* Compiles the user's functions and links them into the kernel `base`. */
-static whit_result compile(const whit_log *log, struct shader_compiler *compiler,
-                           const whit_shader *shader, const struct kernel_parts *parts,
-                           const struct kernel_code *base, struct shader_code *code,
-                           struct shader_errors *errors)
-{
-    struct kernel_request of;
-    if (!kernel_request_init(log, shader, parts, &of))
-        return WHIT_ERROR_MEMORY;
-    of.request.base = base->words;
-    of.request.base_bytes = base->bytes;
-    of.request.cpu_s = parts->kind == TEXT_TESTS ? 0.0 : FUNCTIONS_CPU_S;
-    whit_result result = shader_compile(compiler, &parts->user, &of.request, code, errors);
-    free(of.text);
-    return result;
-}
-
 /* intersect() without //@ box is an error, and so is //@ box without intersect(). */
 static bool find_box(const whit_log *log, const whit_shader *shader, struct shader_errors *errors)
 {
@@ -325,7 +300,7 @@ static whit_result find_hooks(const whit_log *log, whit_shader *shader,
 /* Compiles a kernel of shader->stages: as it is, or (`hooks`) as a base that the user's functions
    can be linked into. */
 static whit_result compile_stage(struct shader_compiler *compiler, const whit_shader *shader,
-                                 enum shader_kernel kernel, bool hooks, struct shader_code *code,
+                                 enum hook_kernel kernel, bool hooks, struct shader_code *code,
                                  struct shader_errors *errors)
 {
     char number[DEFINE_BYTES];
@@ -339,49 +314,51 @@ static whit_result compile_stage(struct shader_compiler *compiler, const whit_sh
     return shader_compile(compiler, NULL, &request, code, errors);
 }
 
+/* Compiles the user's functions and links them into a kernel. */
 static whit_result compile_hooked(const whit_log *log, struct shader_compiler *compiler,
                                   whit_shader *shader, const struct kernel_parts *parts,
-                                  enum shader_kernel kernel, struct shader_errors *errors)
+                                  enum hook_kernel kernel, struct shader_errors *errors)
 {
-    struct shader_code code = {0};
+    struct shader_code base = {0},
+                       *codes = parts->kind == TEXT_DBG ? shader->dbg_codes : shader->codes;
+    struct kernel_request of;
+    if (!kernel_request_init(log, shader, parts, &of))
+        return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
     if (shader->stages)
-        result = compile_stage(compiler, shader, kernel, true, &code, errors);
-    const struct kernel_code base = {hook_kernels[kernel].name, code.words, code.bytes};
+        result = compile_stage(compiler, shader, kernel, true, &base, errors);
+    of.request.base = shader->stages ? base.words : hook_kernels[kernel].words;
+    of.request.base_bytes = shader->stages ? base.bytes : hook_kernels[kernel].bytes;
+    of.request.cpu_s = parts->kind == TEXT_TESTS ? 0.0 : FUNCTIONS_CPU_S;
     if (result == WHIT_OK)
-        result = compile(
-            log, compiler, shader, parts, shader->stages ? &base : &hook_kernels[kernel],
-            parts->kind == TEXT_DBG ? &shader->dbg_codes[kernel] : &shader->codes[kernel], errors);
-    shader_code_free(&code);
+        result = shader_compile(compiler, &parts->user, &of.request, &codes[kernel], errors);
+    shader_code_free(&base);
+    free(of.text);
     return result;
+}
+
+/* Whether a kernel of this kind has functions of the user. The shadow stage records no dbg(x): it
+   makes the camera rays again, which the first stage has recorded. */
+static bool has_functions(const whit_shader *shader, enum kernel_text kind, uint32_t kernel)
+{
+    if (kind == TEXT_TESTS)
+        return kernel == HOOK_KERNEL_TEST;
+    return (kernel_table[kernel].hooks & shader->hooks) &&
+           !(kind == TEXT_DBG && kernel == HOOK_KERNEL_SHADOW);
 }
 
 static whit_result compile_all(const whit_log *log, struct shader_compiler *compiler,
-                               whit_shader *shader, struct shader_errors *errors)
+                               whit_shader *shader, enum kernel_text kind,
+                               struct shader_errors *errors)
 {
     struct kernel_parts parts;
-    whit_result result = parts_init(shader, TEXT_PLAIN, &parts) ? WHIT_OK : WHIT_ERROR_MEMORY;
-    for (uint32_t i = 0; result == WHIT_OK && i < SHADER_KERNEL_COUNT; ++i) {
-        if (kernel_table[i].hooks & shader->hooks)
-            result = compile_hooked(log, compiler, shader, &parts, (enum shader_kernel)i, errors);
-        else if (shader->stages && i < SHADER_KERNEL_MISS)
-            result = compile_stage(compiler, shader, (enum shader_kernel)i, false,
-                                   &shader->codes[i], errors);
-    }
-    parts_finish(&parts);
-    return result;
-}
-
-/* Compiles the kernels that record dbg(x), without the shadow stage: it makes the camera rays
-   again, which the first stage has recorded. */
-static whit_result compile_dbg(const whit_log *log, struct shader_compiler *compiler,
-                               whit_shader *shader, struct shader_errors *errors)
-{
-    struct kernel_parts parts;
-    whit_result result = parts_init(shader, TEXT_DBG, &parts) ? WHIT_OK : WHIT_ERROR_MEMORY;
-    for (uint32_t i = 0; result == WHIT_OK && i < SHADER_KERNEL_TEST; ++i) {
-        if ((kernel_table[i].hooks & shader->hooks) && i != SHADER_KERNEL_SHADOW)
-            result = compile_hooked(log, compiler, shader, &parts, (enum shader_kernel)i, errors);
+    whit_result result = parts_init(log, shader, kind, &parts) ? WHIT_OK : WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; result == WHIT_OK && i < HOOK_KERNEL_COUNT; ++i) {
+        enum hook_kernel kernel = (enum hook_kernel)i;
+        if (has_functions(shader, kind, i))
+            result = compile_hooked(log, compiler, shader, &parts, kernel, errors);
+        else if (kind == TEXT_PLAIN && shader->stages && i < HOOK_KERNEL_MISS)
+            result = compile_stage(compiler, shader, kernel, false, &shader->codes[i], errors);
     }
     parts_finish(&parts);
     return result;
@@ -400,8 +377,8 @@ static void list_files(whit_shader *shader)
 whit_result shader_program_stages(const whit_log *log, const char *folder,
                                   struct shader_stages **stages, struct shader_errors *errors)
 {
-    const char *paths[SHADER_KERNEL_COUNT + 2] = {[SHADER_KERNEL_COUNT] = HOOK_TEXT};
-    for (uint32_t i = 0; i < SHADER_KERNEL_COUNT; ++i)
+    const char *paths[HOOK_KERNEL_COUNT + 2] = {[HOOK_KERNEL_COUNT] = HOOK_TEXT};
+    for (uint32_t i = 0; i < HOOK_KERNEL_COUNT; ++i)
         paths[i] = kernel_table[i].path;
     *stages = NULL;
     return folder ? shader_stages_read(log, folder, paths, stages, errors) : WHIT_OK;
@@ -410,23 +387,17 @@ whit_result shader_program_stages(const whit_log *log, const char *folder,
 whit_result shader_program_compile_tests(const whit_log *log, struct shader_compiler *compiler,
                                          whit_shader *shader, struct shader_errors *errors)
 {
-    struct kernel_parts parts;
-    whit_result result = WHIT_ERROR_MEMORY;
-    shader_code_free(&shader->codes[SHADER_KERNEL_TEST]);
-    if (parts_init(shader, TEXT_TESTS, &parts))
-        result = compile_hooked(log, compiler, shader, &parts, SHADER_KERNEL_TEST, errors);
-    parts_finish(&parts);
-    return result;
+    shader_code_free(&shader->codes[HOOK_KERNEL_TEST]);
+    return compile_all(log, compiler, shader, TEXT_TESTS, errors);
 }
 
-char *shader_program_expand(const whit_log *log, const whit_shader *shader,
-                            enum shader_kernel kernel)
+char *shader_program_expand(const whit_log *log, const whit_shader *shader, enum hook_kernel kernel)
 {
     struct kernel_parts parts;
     struct kernel_request of;
     char *text = NULL;
     size_t bytes;
-    if (parts_init(shader, kernel == SHADER_KERNEL_TEST ? TEXT_TESTS : TEXT_PLAIN, &parts) &&
+    if (parts_init(log, shader, kernel == HOOK_KERNEL_TEST ? TEXT_TESTS : TEXT_PLAIN, &parts) &&
         kernel_request_init(log, shader, &parts, &of)) {
         text = shader_expand(log, &parts.user, &of.request, &bytes, NULL);
         free(of.text);
@@ -436,14 +407,16 @@ char *shader_program_expand(const whit_log *log, const whit_shader *shader,
 }
 
 /* Fills in what whit_shader_info points to. */
-static bool fill_infos(whit_shader *shader)
+static whit_result fill_infos(const whit_log *log, whit_shader *shader)
 {
     const struct shader_tests *tests = &shader->tests;
     list_files(shader);
     shader->test_infos = array_alloc_zeroed(tests->test_count, sizeof *shader->test_infos);
     shader->check_infos = array_alloc_zeroed(tests->check_count, sizeof *shader->check_infos);
-    if (!shader->test_infos || !shader->check_infos)
-        return false;
+    if (!shader->test_infos || !shader->check_infos) {
+        log_error(log, "no memory for a list of tests");
+        return WHIT_ERROR_MEMORY;
+    }
     for (uint32_t i = 0; i < tests->test_count; ++i) {
         const struct shader_test *test = &tests->tests[i];
         shader->test_infos[i] =
@@ -455,7 +428,7 @@ static bool fill_infos(whit_shader *shader)
         shader->check_infos[i] =
             (whit_shader_check){check->text, shader->files[check->file], check->line};
     }
-    return true;
+    return WHIT_OK;
 }
 
 whit_result shader_program_create(const whit_log *log, struct shader_compiler *compiler,
@@ -484,11 +457,11 @@ whit_result shader_program_create(const whit_log *log, struct shader_compiler *c
     if (result == WHIT_OK && has_text)
         result = find_hooks(log, shader, errors);
     if (result == WHIT_OK)
-        result = compile_all(log, compiler, shader, errors);
+        result = compile_all(log, compiler, shader, TEXT_PLAIN, errors);
     if (result == WHIT_OK && shader->dbg.count)
-        result = compile_dbg(log, compiler, shader, errors);
-    if (result == WHIT_OK && !fill_infos(shader))
-        result = WHIT_ERROR_MEMORY;
+        result = compile_all(log, compiler, shader, TEXT_DBG, errors);
+    if (result == WHIT_OK)
+        result = fill_infos(log, shader);
     if (result != WHIT_OK) {
         shader_program_destroy(shader);
         return result;
@@ -501,7 +474,7 @@ void shader_program_destroy(whit_shader *shader)
 {
     if (!shader)
         return;
-    for (uint32_t i = 0; i < SHADER_KERNEL_COUNT; ++i) {
+    for (uint32_t i = 0; i < HOOK_KERNEL_COUNT; ++i) {
         shader_code_free(&shader->codes[i]);
         shader_code_free(&shader->dbg_codes[i]);
     }

@@ -2,25 +2,11 @@
 #ifndef SHADER_PROGRAM_H
 #define SHADER_PROGRAM_H
 
+#include "kernels.h"
 #include "shader/compile.h"
 #include "shader/dbg.h"
 #include "shader/tests.h"
 #include "whit/whit_shader.h"
-
-/* The kernels that a user's functions (hooks) may be parts of. */
-enum shader_kernel {
-    SHADER_KERNEL_CLOSEST,
-    SHADER_KERNEL_SHADE,
-    SHADER_KERNEL_SHADOW,
-    SHADER_KERNEL_RESOLVE,
-    SHADER_KERNEL_MISS, /* from here on: kernels that are only made for hooks */
-    SHADER_KERNEL_SHAPE,
-    SHADER_KERNEL_HIT,
-    SHADER_KERNEL_AOV,
-    SHADER_KERNEL_POST,
-    SHADER_KERNEL_TEST, /* runs the file's tests: see tests.h */
-    SHADER_KERNEL_COUNT
-};
 
 enum {
     SHADER_SLIDERS_MAX = 64, /* values of all sliders: SLIDERS_MAX of shaders/abi/shade.h */
@@ -73,25 +59,23 @@ struct whit_shader {
     const char *aov_names[SHADER_AOVS_MAX];
     uint32_t aov_count;
     struct shader_box box;
-    struct shader_code codes[SHADER_KERNEL_COUNT]; /* no words: no hook is part of the kernel */
+    struct shader_code codes[HOOK_KERNEL_COUNT]; /* no words: no hook is part of the kernel */
     struct shader_dbg dbg;
     /* Variants of the kernels that record dbg(x). No words: the file has no dbg(x), or the stage
        only repeats what another one records. */
-    struct shader_code dbg_codes[SHADER_KERNEL_COUNT];
+    struct shader_code dbg_codes[HOOK_KERNEL_COUNT];
     const char *files[SHADER_TEXT_FILES_MAX + SHADER_STAGES_MAX];
     uint32_t file_count;
 };
 
 /* program.c */
-const char *shader_kernel_name(enum shader_kernel kernel);
 static inline bool shader_has(const whit_shader *shader, whit_hook hook)
 {
     return shader && (shader->hooks >> hook & 1);
 }
-/* The shader's code for the kernel of that name, "shade" for example; NULL: whit's own serves. */
-const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel);
-/* The same for a probe, with code that records each dbg(x); NULL: none. */
-const struct shader_code *shader_dbg_code_of(const whit_shader *shader, const char *kernel);
+/* The shader's code for the kernel of that name, "shade" for example; NULL: whit's own serves. With
+   `dbg`, for a probe, rather code that records each dbg(x). */
+const struct shader_code *shader_code_of(const whit_shader *shader, const char *kernel, bool dbg);
 /* Whether functions of the user are part of that kernel. */
 bool shader_is_hooked(const whit_shader *shader, const char *kernel);
 /* Bits SHADER_REACHES_* of all of the shader's functions. */
@@ -124,6 +108,6 @@ WHIT_CHECK whit_result shader_program_compile_tests(const whit_log *log,
                                                     struct shader_errors *errors);
 /* See whit_shader_kernel_text. NULL: no memory, which was logged. */
 char *shader_program_expand(const whit_log *log, const whit_shader *shader,
-                            enum shader_kernel kernel);
+                            enum hook_kernel kernel);
 
 #endif

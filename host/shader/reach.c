@@ -74,8 +74,7 @@ static void name_member(struct reach *reach, const uint32_t *words)
 void reach_begin(struct reach *reach, const struct spv_module *m)
 {
     memset(reach, 0, sizeof *reach);
-    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        const uint32_t *words = m->words + at, *def;
+    for (const uint32_t *words = spv_step(m, NULL), *def; words; words = spv_step(m, words)) {
         if (spv_op(words) == OP_MEMBER_NAME && spv_length(words) > 3)
             name_member(reach, words);
         if (spv_op(words) != OP_NAME || spv_length(words) < 3)

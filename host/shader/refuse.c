@@ -158,8 +158,7 @@ uint32_t refuse_capability(const struct spv_module *m, const char **name)
         const char *name;
     } names[] = {{9, "16-bit floats"},   {10, "double"},      {22, "16-bit integers"},
                  {39, "8-bit integers"}, {51, "derivatives"}, {5, "addresses"}};
-    for (size_t at = SPV_HEADER_WORDS; at < m->functions_at; at += spv_length(m->words + at)) {
-        const uint32_t *words = m->words + at;
+    for (const uint32_t *words = spv_step(m, NULL); words; words = spv_step(m, words)) {
         bool found = spv_op(words) != OP_CAPABILITY;
         for (size_t i = 0; !found && i < sizeof known / sizeof *known; ++i)
             found = words[1] == known[i];

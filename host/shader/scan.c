@@ -271,6 +271,21 @@ bool scan_next_function(struct scan *scan, struct scan_functions *f)
     return false;
 }
 
+bool scan_finds(const char *text, size_t bytes, const char *name, uint32_t *line)
+{
+    struct scan scan;
+    struct scan_functions functions = {.braces = 0};
+    scan_begin(&scan, text, bytes);
+    while (scan_next_function(&scan, &functions)) {
+        if (name && strcmp(functions.name, name) != 0)
+            continue;
+        if (line)
+            *line = functions.line;
+        return true;
+    }
+    return false;
+}
+
 void scan_copy_brackets(const char *at, char *out, size_t bytes)
 {
     uint32_t open = 1;

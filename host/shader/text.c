@@ -248,37 +248,31 @@ static whit_result at(struct reading *r, uint32_t file, uint32_t line, const cha
     return WHIT_ERROR_INPUT;
 }
 
-/* Why a directive is refused that only whit's own text may use; NULL: it is not refused. */
-static const char *refused_directive(const char *name)
+/* Why a directive or a word is refused that only kernels may use; NULL: it is not refused. Words
+   cannot be made by ## either, which is refused. */
+static const char *refused(const struct scan *scan)
 {
-    static const char *const pairs[][2] = {
-        {"version", "#version is whit's own: leave it out (whit's is 460)"},
-        {"extension", "#extension is whit's own: leave it out"},
-        {"line", "#line is whit's own: leave it out"},
-        {"pragma", "#pragma means nothing here: leave it out; what is included twice goes between "
-                   "#ifndef and #endif"},
+    static const struct {
+        enum scan_kind kind;
+        const char *name, *why;
+    } rows[] = {
+        {SCAN_DIRECTIVE, "version", "#version is whit's own: leave it out (whit's is 460)"},
+        {SCAN_DIRECTIVE, "extension", "#extension is whit's own: leave it out"},
+        {SCAN_DIRECTIVE, "line", "#line is whit's own: leave it out"},
+        {SCAN_DIRECTIVE, "pragma",
+         "#pragma means nothing here: leave it out; what is included twice goes between #ifndef "
+         "and "
+         "#endif"},
+        {SCAN_WORD, "layout", "layout is whit's own: functions of users have no bindings"},
+        {SCAN_WORD, "uniform", "uniform is whit's own: functions of users have no bindings"},
+        {SCAN_WORD, "buffer", "buffer is whit's own: functions of users have no bindings"},
+        {SCAN_WORD, "shared", "shared is whit's own: functions of users share no memory"},
+        {SCAN_WORD, "main",
+         "main is whit's own: see docs/shaders.md for the functions that can be written"},
     };
-    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i) {
-        if (strcmp(name, pairs[i][0]) == 0)
-            return pairs[i][1];
-    }
-    return NULL;
-}
-
-/* Refuses words that only kernels may use. They cannot be made by ## either, which is refused. */
-static const char *refused_word(const char *word)
-{
-    static const char *const words[] = {"layout", "uniform", "buffer", "shared", "main"};
-    static const char *const reasons[] = {
-        "layout is whit's own: functions of users have no bindings",
-        "uniform is whit's own: functions of users have no bindings",
-        "buffer is whit's own: functions of users have no bindings",
-        "shared is whit's own: functions of users share no memory",
-        "main is whit's own: see docs/shaders.md for the functions that can be written",
-    };
-    for (size_t i = 0; i < sizeof words / sizeof *words; ++i) {
-        if (strcmp(word, words[i]) == 0)
-            return reasons[i];
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+        if (scan_is(scan, rows[i].kind, rows[i].name))
+            return rows[i].why;
     }
     return NULL;
 }
@@ -291,9 +285,6 @@ static whit_result check_directive(struct reading *r, uint32_t file, const struc
                                    struct conditions *open)
 {
     const uint32_t max = sizeof open->lines / sizeof *open->lines;
-    const char *why = refused_directive(scan->text);
-    if (why)
-        return at(r, file, scan->token_line, why);
     if (strncmp(scan->text, "if", 2) == 0) {
         if (open->count == max)
             return at(r, file, scan->token_line, "more than 64 #if in each other");
@@ -359,6 +350,9 @@ static whit_result refuse_character(struct reading *r, uint32_t file, const stru
 static whit_result check_token(struct reading *r, uint32_t file, struct scan *scan,
                                struct conditions *open)
 {
+    const char *why = refused(scan);
+    if (why)
+        return at(r, file, scan->token_line, why);
     if (scan->kind == SCAN_DIRECTIVE) {
         whit_result result = check_directive(r, file, scan, open);
         return result == WHIT_OK && strcmp(scan->text, "include") == 0 ? read_include(r, file, scan)
@@ -366,8 +360,6 @@ static whit_result check_token(struct reading *r, uint32_t file, struct scan *sc
     }
     if (scan->kind == SCAN_STRING && (strstr(scan->text, "//") || strstr(scan->text, "/*")))
         return at(r, file, scan->token_line, "a comment in a string");
-    if (scan->kind == SCAN_WORD && refused_word(scan->text))
-        return at(r, file, scan->token_line, refused_word(scan->text));
     if (scan->kind == SCAN_SIGN && (unsigned char)scan->text[0] > 127)
         return refuse_character(r, file, scan);
     if (scan_is(scan, SCAN_SIGN, "#"))
@@ -485,24 +477,12 @@ static whit_result read_one(struct reading *r, const struct place *place, char *
     return result;
 }
 
-static bool has_function(const struct shader_text *text)
-{
-    for (uint32_t i = 0; i < text->file_count; ++i) {
-        struct scan scan;
-        struct scan_functions functions = {.braces = 0};
-        scan_begin(&scan, text->files[i].text, text->files[i].bytes);
-        if (scan_next_function(&scan, &functions))
-            return true;
-    }
-    return false;
-}
-
 static whit_result read_all(struct reading *r, const char *first)
 {
     uint32_t index;
     char *relative = string_copy(first);
     whit_result result = relative ? read_one(r, NULL, relative, &index) : no_memory(r);
-    if (result == WHIT_OK && !has_function(r->text))
+    if (result == WHIT_OK && !shader_text_defines(r->text, NULL, NULL, NULL))
         result = at(r, 0, 0, "it has no function");
     if (result != WHIT_OK)
         shader_text_free(r->text);
@@ -585,18 +565,11 @@ bool shader_text_defines(const struct shader_text *text, const char *name, uint3
                          uint32_t *line)
 {
     for (uint32_t i = 0; i < text->file_count; ++i) {
-        struct scan scan;
-        struct scan_functions functions = {.braces = 0};
-        scan_begin(&scan, text->files[i].text, text->files[i].bytes);
-        while (scan_next_function(&scan, &functions)) {
-            if (strcmp(functions.name, name) != 0)
-                continue;
-            if (file)
-                *file = i;
-            if (line)
-                *line = functions.line;
-            return true;
-        }
+        if (!scan_finds(text->files[i].text, text->files[i].bytes, name, line))
+            continue;
+        if (file)
+            *file = i;
+        return true;
     }
     return false;
 }

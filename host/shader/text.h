@@ -71,9 +71,9 @@ void shader_text_free(struct shader_text *text);
 bool shader_text_copy(const struct shader_text *text, size_t more, struct shader_text *out);
 void shader_text_end_copy(struct shader_text *copy); /* accepts a zeroed one */
 
-/* Whether any of the files has a function of this name with a body at the top level; *file
-   and *line (may be NULL): the first of them. The text is not preprocessed: code in a false #if
-   counts, but for `#if 0`, and code that macros make does not. */
+/* Whether any of the files has a function of this name (NULL: any) with a body at the top level;
+   *file and *line (may be NULL): the first of them. The text is not preprocessed: code in a false
+   #if counts, but for `#if 0`, and code that macros make does not. */
 bool shader_text_defines(const struct shader_text *text, const char *name, uint32_t *file,
                          uint32_t *line);
 

@@ -42,7 +42,7 @@ static struct tally tally_of(const uint32_t *words, size_t count)
     return tally;
 }
 
-static uint32_t *filled_in(enum kernel kernel, const struct gpu_spec *spec, size_t *count)
+static uint32_t *filled_in(int kernel, const struct gpu_spec *spec, size_t *count)
 {
     uint32_t *words = NULL;
     assert_int_equal(spirv_evaluate(kernels[kernel].words, kernels[kernel].bytes / 4,
@@ -51,7 +51,7 @@ static uint32_t *filled_in(enum kernel kernel, const struct gpu_spec *spec, size
     return words;
 }
 
-static struct tally specialized(enum kernel kernel, const struct gpu_spec *spec)
+static struct tally specialized(int kernel, const struct gpu_spec *spec)
 {
     size_t count = 0;
     own_memory uint32_t *words = filled_in(kernel, spec, &count);
@@ -62,7 +62,7 @@ TEST(constants_are_gone_and_floats_stay_exact)
 {
     const struct gpu_spec all = GPU_SPEC_DEFAULTS;
     for (int i = 0; i < KERNEL_COUNT; ++i) {
-        enum kernel kernel = (enum kernel)i;
+        int kernel = i;
         struct tally before = tally_of(kernels[kernel].words, kernels[kernel].bytes / 4);
         struct tally after = specialized(kernel, &all);
         assert_true(before.spec_constants > 0);
@@ -81,7 +81,7 @@ TEST(evaluated_kernels_call_nothing)
     struct gpu_spec less = all;
     less.SPEC_REFRACTION = less.SPEC_FILTERS = less.SPEC_LISTED = 0;
     for (int i = 0; i < 2 * KERNEL_COUNT; ++i) {
-        enum kernel kernel = (enum kernel)(i / 2);
+        int kernel = i / 2;
         struct spirv_info whole, flat;
         size_t words_before = kernels[kernel].bytes / 4, count = 0;
         own_memory uint32_t *words = filled_in(kernel, i % 2 ? &less : &all, &count);
@@ -113,7 +113,7 @@ TEST(what_is_switched_off_is_gone)
 }
 
 /* Loops left with the control Unroll. */
-static uint32_t loops_to_unroll(enum kernel kernel, const struct gpu_spec *spec)
+static uint32_t loops_to_unroll(int kernel, const struct gpu_spec *spec)
 {
     size_t count = 0;
     uint32_t *words = filled_in(kernel, spec, &count), loops = 0;
@@ -125,7 +125,7 @@ static uint32_t loops_to_unroll(enum kernel kernel, const struct gpu_spec *spec)
 
 TEST(loops_of_one_and_two_iterations_are_unrolled)
 {
-    static const enum kernel traced[] = {KERNEL_CLOSEST, KERNEL_SHADOW};
+    static const int traced[] = {KERNEL_CLOSEST, KERNEL_SHADOW};
     for (size_t i = 0; i < sizeof traced / sizeof *traced; ++i) {
         struct gpu_spec spec = GPU_SPEC_DEFAULTS;
         spec.SPEC_PACKET_RAYS = 1;

@@ -25,7 +25,7 @@ static uint32_t count_functions(const struct shader_code *code)
     return count;
 }
 
-#define KERNEL(name) (1u << SHADER_KERNEL_##name)
+#define KERNEL(name) (1u << HOOK_KERNEL_##name)
 
 TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
 {
@@ -82,15 +82,15 @@ TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         whit_shader *shader = make(cases[i].content);
-        uint32_t kernels = 0;
-        for (uint32_t k = 0; shader && k < SHADER_KERNEL_COUNT; ++k) {
+        uint32_t made = 0;
+        for (uint32_t k = 0; shader && k < HOOK_KERNEL_COUNT; ++k) {
             if (!shader->codes[k].words)
                 continue;
-            kernels |= 1u << k;
+            made |= 1u << k;
             assert_valid(&shader->codes[k]);
         }
-        if (kernels != cases[i].kernels)
-            fail_msg("kernels %u of %s: %s", kernels, cases[i].content,
+        if (made != cases[i].kernels)
+            fail_msg("kernels %u of %s: %s", made, cases[i].content,
                      errors.count ? errors.items[0].reason : "no error");
         shader_program_destroy(shader);
     }
@@ -103,8 +103,8 @@ TEST_IN(kernels_have_what_is_called_alone, compiler_begin, compiler_end)
     whit_shader *more = make("float f(float x) { return x; }\nfloat g(float x) { return f(x); }\n"
                              "vec3 post(ivec2 at, vec3 c) { return c * g(c.x); }\n"
                              "float h(float x) { return f(x); }\n");
-    const struct shader_code *a = &plain->codes[SHADER_KERNEL_POST];
-    const struct shader_code *b = &more->codes[SHADER_KERNEL_POST];
+    const struct shader_code *a = &plain->codes[HOOK_KERNEL_POST];
+    const struct shader_code *b = &more->codes[HOOK_KERNEL_POST];
     assert_int_equal(count_functions(b), count_functions(a) + 2);
     shader_program_destroy(plain);
     shader_program_destroy(more);
