@@ -29,7 +29,7 @@ static bool complain(const struct line *line, const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     shader_error_add(line->log, line->errors, line->shader->text.files[line->file].name,
-                     line->number, "%s", text);
+                     line->number, 0, "%s", text);
     return false;
 }
 

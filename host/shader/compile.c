@@ -144,24 +144,24 @@ static whit_result explain(const struct place *place, enum child_end end,
     const char *name = whole_name(place);
     switch (end) {
     case CHILD_TIME:
-        shader_error_add(place->log, place->errors, name, 0,
+        shader_error_add(place->log, place->errors, name, 0, 0,
                          "it was not compiled within %.3g s of the processor's time, or %.3g s by "
                          "the clock",
                          limits->cpu_s, child_clock_limit_s(limits));
         return WHIT_ERROR_INPUT;
     case CHILD_MEMORY:
         if (reply->signal)
-            shader_error_add(place->log, place->errors, name, 0,
+            shader_error_add(place->log, place->errors, name, 0, 0,
                              "the compiler was killed (signal %d), as where the machine runs out "
                              "of memory",
                              reply->signal);
         else
-            shader_error_add(place->log, place->errors, name, 0,
+            shader_error_add(place->log, place->errors, name, 0, 0,
                              "the compiler asked for more than %.4g MiB of memory for it",
                              (double)limits->memory_bytes / 1048576.0);
         return WHIT_ERROR_INPUT;
     case CHILD_CRASHED: /* C++ ends by abort(), signal 6, where memory runs out */
-        shader_error_add(place->log, place->errors, name, 0,
+        shader_error_add(place->log, place->errors, name, 0, 0,
                          "the compiler crashed on it (signal %d)%s", reply->signal,
                          reply->signal == 6 ? ", as where memory runs out"
                                             : ", as on brackets or blocks that are too deep");
@@ -178,7 +178,7 @@ static whit_result explain(const struct place *place, enum child_end end,
                   strerror(reply->open_because));
         return WHIT_ERROR_USAGE;
     default:
-        shader_error_add(place->log, place->errors, name, 0,
+        shader_error_add(place->log, place->errors, name, 0, 0,
                          end == CHILD_FORBIDDEN
                              ? "the compiler tried on it what it may not, and was stopped"
                              : "the compiler gave no usable reply");
@@ -255,10 +255,8 @@ static uint32_t find_column(const struct shader_file *file, uint32_t line, const
 static void add_error_at(const struct place *place, const struct shader_file *file, uint32_t line,
                          const char *reason)
 {
-    struct shader_error error = {.line = line, .column = find_column(file, line, reason)};
-    snprintf(error.file, sizeof error.file, "%s", file->name);
-    snprintf(error.reason, sizeof error.reason, "%s", reason);
-    shader_error_put(place->log, place->errors, &error);
+    shader_error_add(place->log, place->errors, file->name, line, find_column(file, line, reason),
+                     "%s", reason);
 }
 
 static void add_own_error(const struct place *place, const struct glslang_error *error,
@@ -282,7 +280,7 @@ static void add_own_error(const struct place *place, const struct glslang_error 
         snprintf(name, sizeof name, "whit:%s",
                  error->file < shader_source_count ? shader_sources[error->file].path
                                                    : place->request->kernel);
-    shader_error_add(place->log, place->errors, name, error->line,
+    shader_error_add(place->log, place->errors, name, error->line, 0,
                      place->text && !stages
                          ? "%s (in whit's own text: what it uses of yours has another form)"
                          : "%s",
@@ -326,7 +324,7 @@ static void add_errors(const struct place *place, const struct glslang_answer *a
             if (!place->request->stages)
                 break; /* other errors in whit's own text follow from this one */
         } else if (error->own > 1) {
-            shader_error_add(place->log, place->errors, whole_name(place), 0, "%s", reason);
+            shader_error_add(place->log, place->errors, whole_name(place), 0, 0, "%s", reason);
         }
     }
     if (place->errors)
@@ -375,7 +373,7 @@ static whit_result take_reply(const struct place *place, const struct child_repl
     if (reply->size_bytes >= sizeof *got)
         memcpy(got, reply->data, sizeof *got);
     if (reply->size_bytes < sizeof *got || !is_whole(got, reply->size_bytes)) {
-        shader_error_add(place->log, place->errors, whole_name(place), 0,
+        shader_error_add(place->log, place->errors, whole_name(place), 0, 0,
                          "the compiler gave no usable reply");
     } else if (!got->word_count) {
         add_errors(place, got);

@@ -17,6 +17,7 @@ struct shader_request {
     /* A kernel's text in place of the embedded one. It may include embedded files, by names
        relative to `kernel`. NULL: the embedded text. */
     const char *kernel_text;
+    const char *declared;       /* GLSL in front of the user's text; NULL: none */
     const char *const *defines; /* "NAME" or "NAME VALUE", as #define lines after #extension */
     uint32_t define_count;
     /* Used in place of the embedded files; NULL: the embedded files are used. */

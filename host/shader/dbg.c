@@ -19,7 +19,7 @@ struct reading {
 static void complain(struct reading *r, uint32_t line, const char *reason)
 {
     r->wrong = true;
-    shader_error_add(r->log, r->errors, r->text->files[r->file].name, line, "%s", reason);
+    shader_error_add(r->log, r->errors, r->text->files[r->file].name, line, 0, "%s", reason);
 }
 
 static bool is_in_test(const struct reading *r, size_t at)

@@ -26,10 +26,7 @@ struct shader_errors {
 
 /* Keeps an error and logs it as "FILE:line:column: reason", or without what is 0. Of the errors
    behind the first SHADER_ERROR_MAX it only logs that there are some. `errors` may be NULL. */
-void shader_error_put(const whit_log *log, struct shader_errors *errors,
-                      const struct shader_error *error);
-/* The same, with a reason to be formatted and no column. */
 void shader_error_add(const whit_log *log, struct shader_errors *errors, const char *file,
-                      uint32_t line, const char *format, ...) WHIT_PRINTF(5, 6);
+                      uint32_t line, uint32_t column, const char *format, ...) WHIT_PRINTF(6, 7);
 
 #endif

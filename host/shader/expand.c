@@ -72,33 +72,19 @@ static bool goes_on(const struct expansion *e)
 
 /* --- the user's text ------------------------------------------------------------------------ */
 
-/* Returns the start of the next line. *length: of this line, without its end. */
-static const char *next_line(const char *at, const char *end, size_t *length)
-{
-    const char *start = at;
-    while (at < end && *at != '\n' && *at != '\r')
-        at++;
-    *length = (size_t)(at - start);
-    if (at < end)
-        at += at[0] == '\r' && at + 1 < end && at[1] == '\n' ? 2 : 1;
-    return at;
-}
-
 /* Recursive; ends since no file includes itself, directly or not. */
 static void put_user_file(struct expansion *e, uint32_t index)
 {
     const struct shader_file *file = &e->text->files[index];
-    const char *at = file->text, *end = at + file->bytes;
     uint32_t line = 1, include = 0;
-    size_t length;
     put_line(e, 1, EXPAND_USER_TAG, index);
-    for (const char *next; at < end && goes_on(e); at = next, ++line) {
-        next = next_line(at, end, &length);
+    for (const char *at = file->text, *end; *at && goes_on(e); at = *end ? end + 1 : end, ++line) {
+        end = at + strcspn(at, "\n");
         if (include < file->include_count && file->includes[include].line == line) {
             put_user_file(e, file->includes[include++].file);
             put_line(e, line + 1, EXPAND_USER_TAG, index);
         } else {
-            put(e, at, length);
+            put(e, at, strcspn(at, "\r\n"));
             put(e, "\n", 1);
         }
     }
@@ -130,6 +116,8 @@ static void put_undefs(struct expansion *e, const struct shader_file *file)
 
 static void put_user(struct expansion *e)
 {
+    if (e->request->declared)
+        put_string(e, e->request->declared);
     e->user_at = e->used;
     put_user_file(e, 0);
     e->user_end = e->used;
@@ -281,9 +269,9 @@ static void explain(const struct expansion *e, const whit_log *log, struct shade
         log_error(log, "no memory for the text of a kernel");
     else if (e->large)
         shader_error_add(log, errors, has_user(e) ? e->text->files[0].name : e->request->kernel, 0,
-                         "larger than 16 MiB with all that it includes");
+                         0, "larger than 16 MiB with all that it includes");
     else
-        shader_error_add(log, errors, "whit", 0, "no shader %s is embedded", e->missing);
+        shader_error_add(log, errors, "whit", 0, 0, "no shader %s is embedded", e->missing);
 }
 
 bool expand_kernel(const whit_log *log, const struct shader_text *text,

@@ -15,8 +15,6 @@ enum { DEFINES_MAX = WHIT_HOOKS + 1, DEFINE_BYTES = 48 };
    compile for ever is reported within a second. */
 #define FUNCTIONS_CPU_S 0.8
 
-#define USER_INCLUDE    "#include \"../hook/user.glsl\"\n"
-
 static const char *const hook_names[WHIT_HOOKS] = {
     [WHIT_HOOK_CAMERA] = "camera", [WHIT_HOOK_SURFACE] = "surface",
     [WHIT_HOOK_SHADE] = "shade",   [WHIT_HOOK_SCATTER] = "scatter",
@@ -148,26 +146,6 @@ static char *declare_box(const whit_shader *shader)
                          (double)box->error);
 }
 
-/* The text of kernel/hook.comp, with `declared` inserted before the user's text. NULL: no memory,
-   or it does not include hook/user.glsl. */
-static char *hook_text(const struct shader_stages *stages, const char *declared)
-{
-    uint32_t count, index = shader_stages_find(stages, HOOK_TEXT);
-    const struct shader_source *sources = shader_stages_list(stages, &count);
-    const struct shader_source *source = index < count ? &sources[index] : NULL;
-    const char *at = source ? strstr(source->text, USER_INCLUDE) : NULL;
-    if (!at)
-        return NULL;
-    size_t front = (size_t)(at - source->text), bytes = strlen(declared);
-    char *text = calloc(source->bytes + bytes + 1, 1);
-    if (text) {
-        memcpy(text, source->text, front);
-        memcpy(text + front, declared, bytes);
-        memcpy(text + front + bytes, at, source->bytes - front);
-    }
-    return text;
-}
-
 /* The parts of the user's text that a kernel has besides hooks: no others, the tests, or calls of
    dbg(). */
 enum kernel_text {
@@ -223,17 +201,16 @@ static void parts_finish(struct kernel_parts *parts)
     free(parts->declared);
 }
 
-/* A request and what it points to. Only `text` is owned. It points into itself: do not move it. */
+/* A request and what it points to. It points into itself: do not move it. */
 struct kernel_request {
     char texts[DEFINES_MAX][DEFINE_BYTES];
     const char *defines[DEFINES_MAX];
-    char *text; /* free() it */
     struct shader_request request;
 };
 
-/* Prepares the request to compile a kernel: its defines and its text. False: out of memory. */
-static bool kernel_request_init(const whit_log *log, const whit_shader *shader,
-                                const struct kernel_parts *parts, struct kernel_request *of)
+/* Prepares the request to compile the user's functions. */
+static void kernel_request_init(const whit_shader *shader, const struct kernel_parts *parts,
+                                struct kernel_request *of)
 {
     uint32_t count = 0;
     if (parts->kind != TEXT_PLAIN)
@@ -249,16 +226,12 @@ static bool kernel_request_init(const whit_log *log, const whit_shader *shader,
     }
     for (uint32_t i = 0; i < count; ++i)
         of->defines[i] = of->texts[i];
-    of->text = hook_text(shader->stages, parts->declared);
     of->request = (struct shader_request){.kernel = HOOK_TEXT,
-                                          .kernel_text = of->text,
+                                          .declared = parts->declared,
                                           .defines = of->defines,
                                           .define_count = count,
                                           .stages = shader->stages,
                                           .trust = shader->trust};
-    if (!of->text)
-        log_error(log, "%s: no memory, or it does not include hook/user.glsl", HOOK_TEXT);
-    return of->text != NULL;
 }
 
 /* intersect() without //@ box is an error, and so is //@ box without intersect(). */
@@ -269,11 +242,11 @@ static bool find_box(const whit_log *log, const whit_shader *shader, struct shad
     if (has == (shader->box.line > 0))
         return true;
     if (has && shader_text_defines(&shader->text, "intersect", &file, &line))
-        shader_error_add(log, errors, shader->text.files[file].name, line,
+        shader_error_add(log, errors, shader->text.files[file].name, line, 0,
                          "intersect() needs `//@ box` with the box that its shape is in");
     else
         shader_error_add(log, errors, shader->text.files[shader->box.file].name, shader->box.line,
-                         "the box has no shape: there is no function intersect()");
+                         0, "the box has no shape: there is no function intersect()");
     return false;
 }
 
@@ -291,7 +264,7 @@ static whit_result find_hooks(const whit_log *log, whit_shader *shader,
     if (shader->hooks || shader->tests.test_count)
         return WHIT_OK;
     shader_error_add(
-        log, errors, shader->text.files[0].name, 0,
+        log, errors, shader->text.files[0].name, 0, 0,
         "has none of the functions camera, surface, shade, scatter, miss, post, intersect, and "
         "none below `//@ aov NAME`");
     return WHIT_ERROR_INPUT;
@@ -315,16 +288,15 @@ static whit_result compile_stage(struct shader_compiler *compiler, const whit_sh
 }
 
 /* Compiles the user's functions and links them into a kernel. */
-static whit_result compile_hooked(const whit_log *log, struct shader_compiler *compiler,
-                                  whit_shader *shader, const struct kernel_parts *parts,
-                                  enum hook_kernel kernel, struct shader_errors *errors)
+static whit_result compile_hooked(struct shader_compiler *compiler, whit_shader *shader,
+                                  const struct kernel_parts *parts, enum hook_kernel kernel,
+                                  struct shader_errors *errors)
 {
     struct shader_code base = {0},
                        *codes = parts->kind == TEXT_DBG ? shader->dbg_codes : shader->codes;
     struct kernel_request of;
-    if (!kernel_request_init(log, shader, parts, &of))
-        return WHIT_ERROR_MEMORY;
     whit_result result = WHIT_OK;
+    kernel_request_init(shader, parts, &of);
     if (shader->stages)
         result = compile_stage(compiler, shader, kernel, true, &base, errors);
     of.request.base = shader->stages ? base.words : hook_kernels[kernel].words;
@@ -333,7 +305,6 @@ static whit_result compile_hooked(const whit_log *log, struct shader_compiler *c
     if (result == WHIT_OK)
         result = shader_compile(compiler, &parts->user, &of.request, &codes[kernel], errors);
     shader_code_free(&base);
-    free(of.text);
     return result;
 }
 
@@ -356,7 +327,7 @@ static whit_result compile_all(const whit_log *log, struct shader_compiler *comp
     for (uint32_t i = 0; result == WHIT_OK && i < HOOK_KERNEL_COUNT; ++i) {
         enum hook_kernel kernel = (enum hook_kernel)i;
         if (has_functions(shader, kind, i))
-            result = compile_hooked(log, compiler, shader, &parts, kernel, errors);
+            result = compile_hooked(compiler, shader, &parts, kernel, errors);
         else if (kind == TEXT_PLAIN && shader->stages && i < HOOK_KERNEL_MISS)
             result = compile_stage(compiler, shader, kernel, false, &shader->codes[i], errors);
     }
@@ -397,10 +368,9 @@ char *shader_program_expand(const whit_log *log, const whit_shader *shader, enum
     struct kernel_request of;
     char *text = NULL;
     size_t bytes;
-    if (parts_init(log, shader, kernel == HOOK_KERNEL_TEST ? TEXT_TESTS : TEXT_PLAIN, &parts) &&
-        kernel_request_init(log, shader, &parts, &of)) {
+    if (parts_init(log, shader, kernel == HOOK_KERNEL_TEST ? TEXT_TESTS : TEXT_PLAIN, &parts)) {
+        kernel_request_init(shader, &parts, &of);
         text = shader_expand(log, &parts.user, &of.request, &bytes, NULL);
-        free(of.text);
     }
     parts_finish(&parts);
     return text;

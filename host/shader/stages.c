@@ -43,10 +43,10 @@ static whit_result refuse(struct reading *r, const struct place *place, const ch
                           const char *why)
 {
     if (place->file)
-        shader_error_add(r->log, r->errors, place->file, place->line, "#include \"%s\": %s",
+        shader_error_add(r->log, r->errors, place->file, place->line, 0, "#include \"%s\": %s",
                          text_token(name).text, why);
     else
-        shader_error_add(r->log, r->errors, name, 0, "%s", why);
+        shader_error_add(r->log, r->errors, name, 0, 0, "%s", why);
     return WHIT_ERROR_INPUT;
 }
 

@@ -28,7 +28,7 @@ static const struct shader_file *file_of(const struct reading *r)
 static void complain(struct reading *r, uint32_t line, const char *reason)
 {
     r->wrong = true;
-    shader_error_add(r->log, r->errors, file_of(r)->name, line, "%s", reason);
+    shader_error_add(r->log, r->errors, file_of(r)->name, line, 0, "%s", reason);
 }
 
 /* ---- Marks ---- */

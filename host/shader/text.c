@@ -36,10 +36,10 @@ struct place {
 static whit_result refuse(struct reading *r, const struct place *place, const char *why)
 {
     if (place->what)
-        shader_error_add(r->log, r->errors, place->file, place->line, "#include \"%s\": %s",
+        shader_error_add(r->log, r->errors, place->file, place->line, 0, "#include \"%s\": %s",
                          text_token(place->what).text, why);
     else
-        shader_error_add(r->log, r->errors, place->file, place->line, "%s", why);
+        shader_error_add(r->log, r->errors, place->file, place->line, 0, "%s", why);
     return WHIT_ERROR_INPUT;
 }
 
@@ -127,14 +127,14 @@ static whit_result check_bytes(struct reading *r, const struct shader_file *file
     for (size_t i = 0; i < file->bytes; ++i) {
         unsigned char c = (unsigned char)file->text[i];
         if (i - begin > SHADER_TEXT_LINE_BYTES) {
-            shader_error_add(r->log, r->errors, file->name, line, "a line of more than %d bytes",
+            shader_error_add(r->log, r->errors, file->name, line, 0, "a line of more than %d bytes",
                              SHADER_TEXT_LINE_BYTES);
             return WHIT_ERROR_INPUT;
         }
         line += c == '\n';
         begin = c == '\n' ? i + 1 : begin;
         if ((c < ' ' && !strchr("\t\n\v\f\r", c)) || c == 0 || c == 127) {
-            shader_error_add(r->log, r->errors, file->name, line,
+            shader_error_add(r->log, r->errors, file->name, line, 0,
                              "a byte %u, which is no text: this is no GLSL", c);
             return WHIT_ERROR_INPUT;
         }
@@ -154,25 +154,20 @@ static char *resolve(const char *from, const char *included)
     char *out = joined;
     size_t used = 0;
     for (const char *part = joined, *next; part; part = next) {
-        const char *slash = strchr(part, '/');
-        size_t length = slash ? (size_t)(slash - part) : strlen(part);
-        next = slash ? slash + 1 : NULL;
-        if (length == 0 || (length == 1 && part[0] == '.'))
-            continue;
+        size_t length = strcspn(part, "/");
+        next = part[length] ? part + length + 1 : NULL;
         if (length == 2 && part[0] == '.' && part[1] == '.') {
             if (used == 0)
                 break; /* out becomes "" below */
             used--;
             while (used && out[used - 1] != '/')
                 used--;
-            if (!next)
-                break;
-            continue;
+        } else if (length > 1 || (length == 1 && part[0] != '.')) {
+            memmove(out + used, part, length);
+            used += length;
+            if (next)
+                out[used++] = '/';
         }
-        memmove(out + used, part, length);
-        used += length;
-        if (next)
-            out[used++] = '/';
     }
     out[used] = 0;
     return out;
@@ -244,7 +239,7 @@ static whit_result follow_include(struct reading *r, uint32_t parent, uint32_t l
 
 static whit_result at(struct reading *r, uint32_t file, uint32_t line, const char *why)
 {
-    shader_error_add(r->log, r->errors, r->text->files[file].name, line, "%s", why);
+    shader_error_add(r->log, r->errors, r->text->files[file].name, line, 0, "%s", why);
     return WHIT_ERROR_INPUT;
 }
 
@@ -334,14 +329,14 @@ static whit_result refuse_character(struct reading *r, uint32_t file, const stru
         number = number << 6 | (byte[i] & 63u);
     while (line > r->text->files[file].text && line[-1] != '\n')
         --line;
-    struct shader_error error = {.line = scan->token_line, .column = (uint32_t)(first - line) + 1};
-    snprintf(error.file, sizeof error.file, "%s", r->text->files[file].name);
+    uint32_t column = (uint32_t)(first - line) + 1;
+    const char *name = r->text->files[file].name;
     if (length > 1)
-        snprintf(error.reason, sizeof error.reason, "the character '%.*s' (U+%04X) is not GLSL",
-                 (int)length, first, number);
+        shader_error_add(r->log, r->errors, name, scan->token_line, column,
+                         "the character '%.*s' (U+%04X) is not GLSL", (int)length, first, number);
     else
-        snprintf(error.reason, sizeof error.reason, "the byte 0x%02X is not GLSL", byte[0]);
-    shader_error_put(r->log, r->errors, &error);
+        shader_error_add(r->log, r->errors, name, scan->token_line, column,
+                         "the byte 0x%02X is not GLSL", byte[0]);
     return WHIT_ERROR_INPUT;
 }
 
