@@ -275,23 +275,23 @@ TEST_BY_TURNS(effects_left_out_are_gone, 0, 2)
                                                 SCENE_EFFECT_REFRACTION};
     static const struct {
         bool without[3], all;
-    } kernels[] = {{{true, false, false}, false},
-                   {{false, true, false}, false},
-                   {{false, false, true}, false},
-                   {{true, true, false}, true},
-                   {{false, false, true}, true}};
-    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; ++i) {
+    } cases[] = {{{true, false, false}, false},
+                 {{false, true, false}, false},
+                 {{false, false, true}, false},
+                 {{true, true, false}, true},
+                 {{false, false, true}, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         whit_renderer_params params = small;
-        if (kernels[i].all && !cases_turn(i, 2))
+        if (cases[i].all && !cases_turn(i, 2))
             continue;
-        params.all_effects = kernels[i].all;
+        params.all_effects = cases[i].all;
         for (int k = 0; k < 3; ++k)
-            params.effects_removed |= kernels[i].without[k] ? bit(effects[k]) : 0;
+            params.effects_removed |= cases[i].without[k] ? bit(effects[k]) : 0;
         own_picture picture = picture_of(glass_scene(), NULL, &params);
         const uint64_t rays[] = {picture.stats.rays_shadow, picture.stats.rays_reflected,
                                  picture.stats.rays_refracted};
         for (int k = 0; k < 3; ++k)
-            assert_true((rays[k] == 0) == kernels[i].without[k]);
+            assert_true((rays[k] == 0) == cases[i].without[k]);
     }
 }
 
@@ -334,14 +334,13 @@ TEST(glass_that_refracts_nothing_is_a_body_of_its_colour)
     static const struct {
         whit_classes classes;
         bool all;
-    } kernels[] = {
-        {WHIT_CLASSES_ONE, false}, {WHIT_CLASSES_MANY, false}, {WHIT_CLASSES_AUTO, true}};
+    } cases[] = {{WHIT_CLASSES_ONE, false}, {WHIT_CLASSES_MANY, false}, {WHIT_CLASSES_AUTO, true}};
     for (size_t model = 0; model < 2; ++model) {
         if (!cases_turn(model, 2))
             continue;
         own_picture body = glass_or_body(false, model, WHIT_CLASSES_ONE, false);
-        for (size_t i = 0; i < sizeof kernels / sizeof *kernels; ++i) {
-            own_picture glass = glass_or_body(true, model, kernels[i].classes, kernels[i].all);
+        for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+            own_picture glass = glass_or_body(true, model, cases[i].classes, cases[i].all);
             assert_same_picture("glass", &glass, &body);
         }
     }
