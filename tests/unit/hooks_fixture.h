@@ -12,6 +12,14 @@ static inline int hooks_begin(void **state)
     return device_begin(state);
 }
 
+/* The same with the default scene. */
+static inline int hooks_begin_default(void **state)
+{
+    hooks_begin(state);
+    scene_open(WHIT_SCENES_DIR "/default.json");
+    return 0;
+}
+
 static inline int hooks_end(void **state)
 {
     device_end(state);

@@ -21,8 +21,7 @@ static whit_shader *shader;
 
 static int begin(void **state)
 {
-    hooks_begin(state);
-    scene_open(WHIT_SCENES_DIR "/default.json");
+    hooks_begin_default(state);
     shader = hooks_load(content);
     return 0;
 }

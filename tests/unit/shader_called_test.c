@@ -4,29 +4,32 @@
 
 enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT };
 
-static int begin(void **state)
-{
-    hooks_begin(state);
-    scene_open(WHIT_SCENES_DIR "/default.json");
-    return 0;
-}
-
 /* The picture with effects added; *compiled: bits of its effects. */
-static whit_image *draw(const whit_shader *shader, uint64_t added, uint64_t *compiled,
-                        uint32_t *kernels)
+static whit_image *draw_with(const whit_shader *shader, uint64_t added, uint64_t *compiled)
 {
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
-    whit_kernel list[WHIT_KERNELS_MAX];
     params.effects_added = added;
     own_whit_renderer *renderer = renderer_of(&params);
     whit_image *color = drawn_by(renderer);
     *compiled = effects_compiled(renderer);
-    *kernels = 0;
-    uint32_t count;
+    return color;
+}
+
+static whit_image *draw(const whit_shader *shader)
+{
+    uint64_t compiled;
+    return draw_with(shader, 0, &compiled);
+}
+
+static uint32_t count_shadow_kernels(const whit_shader *shader)
+{
+    const whit_renderer_params params = params_sized(WIDTH, HEIGHT, shader);
+    whit_kernel list[WHIT_KERNELS_MAX];
+    uint32_t count, found = 0;
     assert_int_equal(whit_kernels_list(device, accel, &params, true, list, &count), WHIT_OK);
     for (uint32_t i = 0; i < count; ++i)
-        *kernels += strncmp(list[i].name, "shadow", 6) == 0;
-    return color;
+        found += strncmp(list[i].name, "shadow", 6) == 0;
+    return found;
 }
 
 /* Each case is drawn as it is. In turns they are also drawn with every effect of lights added, and
@@ -57,15 +60,15 @@ TEST(what_is_not_asked_for_is_not_compiled)
     uint64_t all = shadows | lights | effect("directional-lights") | effect("tinted-shadows");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         uint64_t compiled, forced;
-        uint32_t kernels, more;
         own_whit_shader *shader = hooks_load(cases[i].content);
-        own_whit_image *usual = draw(shader, 0, &compiled, &kernels);
+        own_whit_image *usual = draw_with(shader, 0, &compiled);
+        uint32_t kernels = count_shadow_kernels(shader);
         if ((compiled & lights) != (cases[i].lights ? lights : 0) ||
             (compiled & shadows) != (cases[i].shadows ? shadows : 0) || kernels != cases[i].kernels)
             fail_msg("lights %d, shadows %d, %u kernels: %s", (compiled & lights) != 0,
                      (compiled & shadows) != 0, kernels, cases[i].content);
         if (cases_turn(i, 3)) {
-            own_whit_image *whole = draw(shader, all, &forced, &more);
+            own_whit_image *whole = draw_with(shader, all, &forced);
             assert_int_equal(forced & all, all);
             assert_same_image(usual, whole);
         }
@@ -142,12 +145,11 @@ TEST(a_kernel_in_parts_draws_the_same)
 /* miss() is called in a kernel of its own, for camera rays and for reflected rays. */
 TEST(misses_know_their_ray)
 {
-    uint64_t compiled;
-    uint32_t kernels, seen = 0, mirrored = 0;
+    uint32_t seen = 0, mirrored = 0;
     own_whit_shader *shader =
         hooks_load("vec3 miss(vec3 dir)\n{\n    return vec3(bounces(), ray_distance() > "
                    "1e30, length(dir));\n}\n");
-    own_whit_image *image = draw(shader, 0, &compiled, &kernels);
+    own_whit_image *image = draw(shader);
     const float *color = whit_image_floats(image);
     for (uint32_t i = 0; i < PIXELS; ++i, color += 4) {
         bool straight = color[0] == 0.0f && color[1] == 1.0f;
@@ -202,8 +204,7 @@ static bool draw_in_place(whit_renderer *renderer, const uint32_t *calls, whit_i
 /* Each version in the same renderer draws the picture of a new renderer, with its own sliders. */
 static void draw_versions(const char *const *versions, const bool *traces, size_t count)
 {
-    uint32_t calls = 0, kernels;
-    uint64_t compiled;
+    uint32_t calls = 0;
     own_whit_shader *before = hooks_load(versions[0]);
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, before);
     own_whit_image *in_place = NULL;
@@ -220,7 +221,7 @@ static void draw_versions(const char *const *versions, const bool *traces, size_
         before = shader;
         if (draw_in_place(renderer, &calls, &in_place) != traces[i])
             fail_msg("%s", versions[i]);
-        own_whit_image *alone = draw(shader, 0, &compiled, &kernels);
+        own_whit_image *alone = draw(shader);
         assert_same_image(in_place, alone);
     }
 }
@@ -371,10 +372,8 @@ TEST_BY_TURNS(another_post_behind_a_cancelled_picture_needs_no_rays, 1, 2)
     own_whit_shader *before = hooks_load(POST("c")), *behind = hooks_load(POST("c.bgr"));
     whit_shader *const shaders[2] = {before, behind};
     own_whit_image *in_place = NULL;
-    uint64_t compiled;
-    uint32_t kernels;
     assert_false(traces_behind_cancelled(1, shaders, &in_place));
-    own_whit_image *alone = draw(behind, 0, &compiled, &kernels);
+    own_whit_image *alone = draw(behind);
     assert_same_image(in_place, alone);
     assert_true(traces_behind_cancelled(4, shaders, &in_place));
 }
@@ -451,4 +450,4 @@ TEST(rays_of_functions_are_counted)
     }
 }
 
-TESTS_IN(begin, hooks_end)
+TESTS_IN(hooks_begin_default, hooks_end)

@@ -74,7 +74,7 @@ TEST_IN(what_has_no_portable_form_is_named, compiler_begin, compiler_end)
         snprintf(text, sizeof text,
                  "float f(float x, int n) { float w = x; int e = n; return %s + w + float(e); }\n",
                  calls[i]);
-        assert_int_equal(compile_files(text, NULL, false, &code), WHIT_OK);
+        assert_int_equal(compile_file(text, false, &code), WHIT_OK);
         assert_int_equal(
             shader_make_portable(&params, code.words, code.bytes / 4, &words, &count, why),
             WHIT_ERROR_INPUT);
@@ -123,7 +123,7 @@ TEST_IN(comparisons_are_left_to_devices_that_are_right, compiler_begin, compiler
         uint32_t *words, functions, all_functions;
         size_t count;
         snprintf(text, sizeof text, "bool f(float x, float y) { return %s; }\n", all[i / 2].text);
-        assert_int_equal(compile_files(text, NULL, false, &code), WHIT_OK);
+        assert_int_equal(compile_file(text, false, &code), WHIT_OK);
         assert_int_equal(
             shader_make_portable(&params, code.words, code.bytes / 4, &words, &count, why),
             WHIT_OK);
@@ -327,7 +327,7 @@ TEST_IN(errors_name_the_line, compiler_begin, compiler_end)
     uint32_t bad = 0, columns = 0;
     for (size_t i = 0; i < sizeof broken / sizeof *broken; ++i) {
         struct shader_code code;
-        if (compile_files(broken[i].content, NULL, false, &code) != WHIT_ERROR_INPUT)
+        if (compile_file(broken[i].content, false, &code) != WHIT_ERROR_INPUT)
             fail_msg("no error: %s", broken[i].content);
         assert_true(!code.words && !code.loops);
         assert_true(errors.count >= 1);
@@ -361,48 +361,35 @@ TEST_IN(errors_name_the_line, compiler_begin, compiler_end)
 
 TEST_IN(lines_are_right_through_two_levels, compiler_begin, compiler_end)
 {
-    static const char kernel[] = "float f(float x, int n) { return g(x); }\n";
-    const struct shader_text_source sources[] = {
-        {"a.glsl", "// a\n#include \"lib/b.glsl\"\n#include \"lib/c.glsl\"\nfloat h = missing_a;\n",
-         0},
-        {"lib/b.glsl", "#include \"c.glsl\"\r\n\r\nfloat g(float x) { return missing_b; }\r\n", 0},
-        {"lib/c.glsl", "#ifndef C\n#define C\n/*\n*/ float c = missing_c; // \\\n\n#endif", 0},
-    };
-    struct shader_text_source whole[3];
-    struct shader_text text;
+    static const char *const files[] = {
+        "a.glsl",
+        "// a\n#include \"lib/b.glsl\"\n#include \"lib/c.glsl\"\nfloat h = missing_a;\n"
+        "float f(float x, int n) { return g(x); }\n",
+        "lib/b.glsl",
+        "#include \"c.glsl\"\r\n\r\nfloat g(float x) { return missing_b; }\r\n",
+        "lib/c.glsl",
+        "#ifndef C\n#define C\n/*\n*/ float c = missing_c; // \\\n\n#endif",
+        NULL};
     struct shader_code code;
-    const struct shader_request request = {.kernel = "kernel/test.comp",
-                                           .kernel_text = test_kernel};
-    char first[512];
-    snprintf(first, sizeof first, "%s%s", sources[0].text, kernel);
-    for (uint32_t i = 0; i < 3; ++i)
-        whole[i] = sources[i];
-    whole[0].text = first;
-    for (uint32_t i = 0; i < 3; ++i)
-        whole[i].bytes = strlen(whole[i].text);
-    errors.count = 0;
-    assert_int_equal(shader_text_from(&warnings_log, whole, 3, &text, &errors), WHIT_OK);
-    assert_int_equal(shader_compile(compiler, &text, &request, &code, &errors), WHIT_ERROR_INPUT);
+    assert_int_equal(compile_in(test_kernel, files, false, &code), WHIT_ERROR_INPUT);
     assert_non_null(strstr(messages.text, "lib/c.glsl:4:14: 'missing_c'"));
     assert_non_null(strstr(messages.text, "lib/b.glsl:3:27: 'missing_b'"));
     assert_non_null(strstr(messages.text, "a.glsl:4:11: 'missing_a'"));
-    shader_text_free(&text);
 }
 
 TEST_IN(a_line_has_one_error_and_a_text_has_many, compiler_begin, compiler_end)
 {
     struct shader_code code;
     char text[4096] = "float f(float x, int n) {\n";
-    assert_int_equal(
-        compile_files("float f(float x, int n) {\n vec2 a = b + c + d;\n return e; }\n", NULL,
-                      false, &code),
-        WHIT_ERROR_INPUT);
+    assert_int_equal(compile_file("float f(float x, int n) {\n vec2 a = b + c + d;\n return e; }\n",
+                                  false, &code),
+                     WHIT_ERROR_INPUT);
     assert_int_equal(errors.count, 2);
     assert_true(errors.items[0].line == 2 && errors.items[1].line == 3);
     for (int i = 0; i < 40; ++i)
         sprintf(text + strlen(text), " x += missing_%d;\n", i);
     strcat(text, " return x; }\n");
-    assert_int_equal(compile_files(text, NULL, false, &code), WHIT_ERROR_INPUT);
+    assert_int_equal(compile_file(text, false, &code), WHIT_ERROR_INPUT);
     assert_int_equal(errors.count, 32);
     assert_int_equal(errors.more, 8);
     assert_int_equal(errors.items[31].line, 33);
@@ -416,7 +403,7 @@ TEST_IN(errors_name_the_column, compiler_begin, compiler_end)
                        "\tx += here;\r\n"
                        " x += twice * twice;\r\n"
                        " return last; }";
-    assert_int_equal(compile_files(text, NULL, false, &code), WHIT_ERROR_INPUT);
+    assert_int_equal(compile_file(text, false, &code), WHIT_ERROR_INPUT);
     assert_int_equal(errors.count, 3);
     assert_true(errors.items[0].line == 2 && errors.items[0].column == 7);
     assert_true(errors.items[1].line == 3 && errors.items[1].column == 0);
@@ -426,15 +413,14 @@ TEST_IN(errors_name_the_column, compiler_begin, compiler_end)
 TEST_IN(recursion_is_told_at_the_function, compiler_begin, compiler_end)
 {
     struct shader_code code;
-    assert_int_equal(
-        compile_files("\nfloat f(float x, int n) { return n < 1 ? x : f(x, n - 1); }\n", NULL,
-                      false, &code),
-        WHIT_ERROR_INPUT);
+    assert_int_equal(compile_file("\nfloat f(float x, int n) { return n < 1 ? x : f(x, n - 1); }\n",
+                                  false, &code),
+                     WHIT_ERROR_INPUT);
     assert_non_null(strstr(messages.text, "a.glsl:2: f calls itself"));
-    assert_int_equal(compile_files("float g(float x, int n);\n"
-                                   "float f(float x, int n) { return n < 1 ? x : g(x, n - 1); }\n"
-                                   "float g(float x, int n) { return f(x, n); }\n",
-                                   NULL, false, &code),
+    assert_int_equal(compile_file("float g(float x, int n);\n"
+                                  "float f(float x, int n) { return n < 1 ? x : g(x, n - 1); }\n"
+                                  "float g(float x, int n) { return f(x, n); }\n",
+                                  false, &code),
                      WHIT_ERROR_INPUT);
     assert_non_null(strstr(messages.text, "which leads back to it"));
     assert_true(strstr(messages.text, "a.glsl:2: f calls g") ||
@@ -444,44 +430,31 @@ TEST_IN(recursion_is_told_at_the_function, compiler_begin, compiler_end)
 /* A macro that the user's file defines does not change whit's own text behind it. */
 TEST_IN(macros_of_users_end_with_their_text, compiler_begin, compiler_end)
 {
-    struct shader_code code = must_compile("#define uint while(true) uint\n"
-                                           "#define i j\n"
-                                           "#define answers cases\n"
-                                           "#define __x 1\n"
-                                           "float f(float x, int n) { return x; }\n");
-    assert_int_equal(code.loop_count, 0);
-    shader_code_free(&code);
-    code = must_compile("float f(float x, int n) { return x; } // \\");
-    shader_code_free(&code);
-    code = must_compile("float f(float x, int n) { return x; } \\\n");
-    shader_code_free(&code);
+    static const char *const texts[] = {"#define uint while(true) uint\n#define i j\n"
+                                        "#define answers cases\n#define __x 1\n" FINE,
+                                        "float f(float x, int n) { return x; } // \\",
+                                        "float f(float x, int n) { return x; } \\\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; ++i) {
+        own_shader_code code = must_compile(texts[i]);
+        assert_int_equal(code.loop_count, 0);
+    }
 }
 
 TEST_IN(a_file_included_again_and_again_is_refused, compiler_begin, compiler_end)
 {
-    struct shader_text_source sources[14];
-    char texts[14][512], names[14][16], *filler = malloc(10000);
-    memset(filler, '/', 9999);
-    filler[9999] = 0;
+    const char *files[2 * 14 + 1] = {NULL};
+    char texts[14][10000] = {FINE}, names[14][16];
+    struct shader_code code;
     for (int i = 0; i < 14; ++i) {
         snprintf(names[i], sizeof names[i], "%c.glsl", 'a' + i);
-        size_t used = (size_t)snprintf(texts[i], sizeof texts[i], i ? "" : FINE);
         for (int j = 0; i < 13 && j < 3; ++j)
-            used += (size_t)snprintf(texts[i] + used, sizeof texts[i] - used,
-                                     "#include \"%c.glsl\"\n", 'a' + i + 1);
-        sources[i] = (struct shader_text_source){names[i], texts[i], strlen(texts[i])};
+            sprintf(texts[i] + strlen(texts[i]), "#include \"%c.glsl\"\n", 'a' + i + 1);
+        files[2 * i] = names[i];
+        files[2 * i + 1] = texts[i];
     }
-    sources[13] = (struct shader_text_source){names[13], filler, 9999};
-    struct shader_text text;
-    struct shader_code code;
-    const struct shader_request request = {.kernel = "kernel/test.comp",
-                                           .kernel_text = test_kernel};
-    assert_int_equal(shader_text_from(&warnings_log, sources, 14, &text, &errors), WHIT_OK);
-    errors.count = 0;
-    assert_int_equal(shader_compile(compiler, &text, &request, &code, &errors), WHIT_ERROR_INPUT);
+    memset(texts[13], '/', sizeof texts[13] - 1);
+    assert_int_equal(compile_in(test_kernel, files, false, &code), WHIT_ERROR_INPUT);
     assert_non_null(strstr(errors.items[0].reason, "larger than 16 MiB"));
-    shader_text_free(&text);
-    free(filler);
 }
 
 static char *repeat(const char *before, const char *what, size_t count, const char *behind)
@@ -497,52 +470,41 @@ static char *repeat(const char *before, const char *what, size_t count, const ch
 
 /* ---- The process ---- */
 
-static uint32_t children(void)
+/* The number of child processes; *last, which may be NULL: one of them. */
+static uint32_t children(pid_t *last)
 {
     char path[64];
     uint32_t count = 0;
     snprintf(path, sizeof path, "/proc/self/task/%d/children", getpid());
     FILE *file = fopen(path, "r");
     assert_non_null(file);
-    for (int pid; fscanf(file, "%d", &pid) == 1;)
-        count++;
+    for (int pid; fscanf(file, "%d", &pid) == 1; count++) {
+        if (last)
+            *last = pid;
+    }
     fclose(file);
     return count;
 }
 
-static pid_t only_child(void)
-{
-    char path[64];
-    int pid = 0;
-    snprintf(path, sizeof path, "/proc/self/task/%d/children", getpid());
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    assert_int_equal(fscanf(file, "%d", &pid), 1);
-    fclose(file);
-    return pid;
-}
-
 TEST(one_process_is_kept_and_none_is_left)
 {
-    assert_int_equal(children(), 0);
+    pid_t first, now;
+    assert_int_equal(children(NULL), 0);
     compiler_open(NULL, 0.0);
-    assert_int_equal(children(), 1);
-    pid_t first = only_child();
+    assert_int_equal(children(&first), 1);
     for (int i = 0; i < 3; ++i) {
-        struct shader_code code = must_compile(FINE);
-        shader_code_free(&code);
-        assert_int_equal(children(), 1);
-        assert_int_equal(only_child(), first);
+        own_shader_code code = must_compile(FINE);
+        assert_int_equal(children(&now), 1);
+        assert_int_equal(now, first);
     }
     /* If the process dies, the compiler starts another one. */
     assert_int_equal(kill(first, SIGKILL), 0);
-    struct shader_code code = must_compile(FINE);
-    shader_code_free(&code);
-    assert_int_equal(children(), 1);
-    assert_true(only_child() != first);
+    own_shader_code code = must_compile(FINE);
+    assert_int_equal(children(&now), 1);
+    assert_true(now != first);
     /* A process that hangs is given up. */
     shader_compiler_destroy(compiler);
-    assert_int_equal(children(), 0);
+    assert_int_equal(children(NULL), 0);
 }
 
 TEST(limits_are_kept)
@@ -564,11 +526,11 @@ TEST(limits_are_kept)
     for (size_t i = HAS_ASAN; i < sizeof cases / sizeof *cases; ++i) {
         struct shader_code code;
         compiler_open(&cases[i].limits, cases[i].clock_s);
-        assert_int_equal(compile_files(long_text, NULL, false, &code), cases[i].result);
+        assert_int_equal(compile_file(long_text, false, &code), cases[i].result);
         if (!strstr(messages.text, cases[i].reason))
             fail_msg("\"%s\" is not in \"%s\"", cases[i].reason, messages.text);
         shader_compiler_destroy(compiler);
-        assert_int_equal(children(), 0);
+        assert_int_equal(children(NULL), 0);
     }
 }
 
@@ -581,7 +543,7 @@ TEST(no_process_outlives_its_parent)
     pid_t parent = fork();
     if (parent == 0) {
         struct shader_compiler *own = shader_compiler_create(NULL, NULL, 0.0);
-        kept = own ? only_child() : 0;
+        kept = own && children(&kept) == 1 ? kept : 0;
         ssize_t written = write(ends[1], &kept, sizeof kept);
         _exit(written == sizeof kept ? 0 : 1);
     }

@@ -54,23 +54,31 @@ static inline int compiler_end(void **state)
     return 0;
 }
 
-/* Compiles text `a` as the user's file "a.glsl", and `b`, where it is not NULL, as "b.glsl". */
-static inline whit_result compile_files(const char *a, const char *b, bool trust,
-                                        struct shader_code *code)
+/* Compiles a kernel with the user's files: names and texts, in turns, up to a NULL. */
+static inline whit_result compile_in(const char *kernel, const char *const *files, bool trust,
+                                     struct shader_code *code)
 {
-    const struct shader_text_source sources[] = {{"a.glsl", a, strlen(a)},
-                                                 {"b.glsl", b, b ? strlen(b) : 0}};
+    struct shader_text_source sources[16];
     const struct shader_request request = {
-        .kernel = "kernel/test.comp", .kernel_text = test_kernel, .trust = trust};
+        .kernel = "kernel/test.comp", .kernel_text = kernel, .trust = trust};
     struct shader_text text;
+    uint32_t count = 0;
     errors = (struct shader_errors){0};
     *code = (struct shader_code){0};
     messages = (struct messages){0};
-    whit_result result = shader_text_from(&warnings_log, sources, b ? 2 : 1, &text, &errors);
+    for (; *files; files += 2)
+        sources[count++] = (struct shader_text_source){files[0], files[1], strlen(files[1])};
+    whit_result result = shader_text_from(&warnings_log, sources, count, &text, &errors);
     if (result == WHIT_OK)
         result = shader_compile(compiler, &text, &request, code, &errors);
     shader_text_free(&text);
     return result;
+}
+
+/* Compiles text `a` as the user's file "a.glsl" with the kernel above. */
+static inline whit_result compile_file(const char *a, bool trust, struct shader_code *code)
+{
+    return compile_in(test_kernel, (const char *const[]){"a.glsl", a, NULL}, trust, code);
 }
 
 static inline bool is_remark(const char *line)
@@ -137,7 +145,7 @@ static inline void assert_valid(const struct shader_code *code)
 static inline struct shader_code must_compile(const char *a)
 {
     struct shader_code code;
-    if (compile_files(a, NULL, false, &code) != WHIT_OK)
+    if (compile_file(a, false, &code) != WHIT_OK)
         fail_msg("%s\n%s", a, messages.text);
     return code;
 }

@@ -179,8 +179,11 @@ TEST_BY_TURNS(answers_that_are_no_shape_s_are_told, 1, 2)
          "    t = 0.5;\n    while (t > 0.0)\n        t += 1.0;\n    return false;\n}\n",
          ":5: `//@ fuel N` gives it more than 10000"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i)
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         expect_error(cases[i].content, WHIT_ERROR_STATUS, cases[i].part);
+        bool names_pixel = strstr(cases[i].part, ", in pixel ");
+        assert_int_equal(strstr(messages.last_error, " of 96 x 64") != NULL, names_pixel);
+    }
 }
 
 TEST(files_with_half_a_shape_are_refused)

@@ -81,7 +81,7 @@ TEST_IN(loops_have_fuel_and_lines, compiler_begin, compiler_end)
             if (!found)
                 fail_msg("line %u: %s", code.loops[j].line, looping[i].content);
         }
-        assert_int_equal(compile_files(looping[i].content, NULL, true, &trusted), WHIT_OK);
+        assert_int_equal(compile_file(looping[i].content, true, &trusted), WHIT_OK);
         assert_valid(&trusted);
         assert_int_equal(trusted.loop_count, 0);
         own_memory char *with = disassemble(code.words, code.bytes);
@@ -98,26 +98,21 @@ TEST_IN(loops_of_whit_have_no_fuel, compiler_begin, compiler_end)
     snprintf(kernel, sizeof kernel, "%s", test_kernel);
     char *end = strrchr(kernel, '}');
     strcpy(end, "    for (uint j = 0u; j < i; j++) answers[i].y += j;\n}\n");
-    const struct shader_text_source source = {"a.glsl", "float f(float x, int n) { return x; }",
-                                              37};
-    struct shader_request request = {.kernel = "kernel/test.comp", .kernel_text = kernel};
-    struct shader_text text;
+    const char *const files[] = {"a.glsl", "float f(float x, int n) { return x; }", NULL};
     own_shader_code code = {0};
-    assert_int_equal(shader_text_from(NULL, &source, 1, &text, NULL), WHIT_OK);
-    assert_int_equal(shader_compile(compiler, &text, &request, &code, &errors), WHIT_OK);
+    assert_int_equal(compile_in(kernel, files, false, &code), WHIT_OK);
     assert_int_equal(code.loop_count, 0);
-    shader_text_free(&text);
 }
 
 TEST_IN(loops_in_included_files_have_their_place, compiler_begin, compiler_end)
 {
+    static const char *const files[] = {
+        "a.glsl",
+        "// one\n#include \"b.glsl\"\nfloat f(float x, int n) {\n"
+        " while (x > 1.0) x = g(x);\n return x; }\n",
+        "b.glsl", "\n\nfloat g(float x) {\n\n while (x > 2.0) x -= 1.0;\n return x; }", NULL};
     own_shader_code code = {0};
-    assert_int_equal(
-        compile_files("// one\n#include \"b.glsl\"\nfloat f(float x, int n) {\n"
-                      " while (x > 1.0) x = g(x);\n return x; }\n",
-                      "\n\nfloat g(float x) {\n\n while (x > 2.0) x -= 1.0;\n return x; }", false,
-                      &code),
-        WHIT_OK);
+    assert_int_equal(compile_in(test_kernel, files, false, &code), WHIT_OK);
     assert_int_equal(code.loop_count, 2);
     bool first = code.loops[0].file == 1;
     const struct shader_loop *a = &code.loops[first ? 1 : 0], *b = &code.loops[first ? 0 : 1];
@@ -163,19 +158,15 @@ static const struct {
 TEST_IN(indices_stay_within, compiler_begin, compiler_end)
 {
     for (size_t i = 0; i < sizeof indexing / sizeof *indexing; ++i) {
-        struct shader_code code = must_compile(indexing[i].content), trusted;
+        own_shader_code code = must_compile(indexing[i].content), trusted = {0};
+        assert_int_equal(compile_file(indexing[i].content, true, &trusted), WHIT_OK);
         assert_valid(&code);
-        char *text = disassemble(code.words, code.bytes);
+        assert_valid(&trusted);
+        own_memory char *text = disassemble(code.words, code.bytes);
+        own_memory char *without = disassemble(trusted.words, trusted.bytes);
         if (count(text, " UMin ") != indexing[i].clamps)
             fail_msg("%u: %s\n%s", count(text, " UMin "), indexing[i].content, text);
-        free(text);
-        shader_code_free(&code);
-        assert_int_equal(compile_files(indexing[i].content, NULL, true, &trusted), WHIT_OK);
-        assert_valid(&trusted);
-        text = disassemble(trusted.words, trusted.bytes);
-        assert_int_equal(count(text, " UMin "), 0);
-        free(text);
-        shader_code_free(&trusted);
+        assert_int_equal(count(without, " UMin "), 0);
     }
 }
 
@@ -233,7 +224,7 @@ TEST_IN(what_users_may_not_do_is_refused, compiler_begin, compiler_end)
     for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
         for (int trust = 0; trust < 2; ++trust) {
             struct shader_code code;
-            if (compile_files(refused[i].content, NULL, trust, &code) != WHIT_ERROR_INPUT)
+            if (compile_file(refused[i].content, trust, &code) != WHIT_ERROR_INPUT)
                 fail_msg("it is not refused: %s", refused[i].content);
             if (errors.items[0].line != refused[i].line ||
                 !strstr(errors.items[0].reason, refused[i].reason))
@@ -268,30 +259,20 @@ TEST_IN(what_is_not_for_users_is_not_called, compiler_begin, compiler_end)
              "float answer_of(int n) { return float(cases[n].x); }\n%s",
              (int)(place - test_kernel), test_kernel, place);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        const struct shader_text_source source = {"a.glsl", cases[i].content,
-                                                  strlen(cases[i].content)};
-        const struct shader_request request = {.kernel = "kernel/test.comp", .kernel_text = kernel};
-        struct shader_text text;
-        struct shader_code code;
-        messages = (struct messages){0};
-        errors.count = 0;
-        assert_int_equal(shader_text_from(&warnings_log, &source, 1, &text, &errors), WHIT_OK);
-        whit_result result = shader_compile(compiler, &text, &request, &code, &errors);
+        const char *const files[] = {"a.glsl", cases[i].content, NULL};
+        own_shader_code code = {0};
+        whit_result result = compile_in(kernel, files, false, &code);
         if (cases[i].reason ? result == WHIT_OK || !strstr(messages.text, cases[i].reason)
                             : result != WHIT_OK)
             fail_msg("%s: %s", cases[i].content, messages.text);
-        shader_code_free(&code);
-        shader_text_free(&text);
     }
 }
 
 TEST_IN(operations_stay_exact, compiler_begin, compiler_end)
 {
     own_shader_code code = must_compile("float f(float x, int n) { return x * 3.0 + 1.0; }\n");
-    char *text = disassemble(code.words, code.bytes);
-    assert_true(count(text, "NoContraction") == 2);
-    assert_int_equal(count(text, "OpLine") + count(text, "OpName") + count(text, "OpString"), 0);
-    free(text);
+    own_memory char *text = disassemble(code.words, code.bytes);
+    assert_int_equal(count(text, "NoContraction"), 2);
     for (size_t at = SPV_HEADER_WORDS; at < code.bytes / 4; at += spv_length(code.words + at))
         assert_false(spv_op(code.words + at) >= OP_SOURCE_CONTINUED &&
                      spv_op(code.words + at) <= OP_LINE);

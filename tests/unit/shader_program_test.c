@@ -313,6 +313,23 @@ static whit_result read_tests(const char *content)
     return shader_tests_read(NULL, &text, &tests, &errors);
 }
 
+struct refused {
+    const char *content, *why;
+    uint32_t line;
+};
+
+/* Asserts that each text has one error, in its line and for its reason. */
+static void refuse_all(whit_result (*read)(const char *content), const struct refused *cases,
+                       size_t count)
+{
+    for (size_t i = 0; i < count; ++i) {
+        if (read(cases[i].content) != WHIT_ERROR_INPUT || errors.count != 1 ||
+            errors.items[0].line != cases[i].line || !strstr(errors.items[0].reason, cases[i].why))
+            fail_msg("%s: %u errors, %u: %s", cases[i].content, errors.count, errors.items[0].line,
+                     errors.items[0].reason);
+    }
+}
+
 static const char tested[] = "float f(float x) { return x; } // check(\n"
                              "//@ test\n"
                              "void one(uint seed) { /* check(0) */\n"
@@ -421,10 +438,7 @@ TEST(a_function_of_that_name_is_the_users)
 TEST(values_that_cannot_be_looked_at_are_refused_with_their_line)
 {
     static const char one[] = "takes one value";
-    const struct {
-        const char *content, *why;
-        uint32_t line;
-    } cases[] = {
+    const struct refused cases[] = {
         {"void f() {\n dbg(); }\n", one, 2},
         {"void f() {\n dbg(1.0, 2.0); }\n", one, 2},
         {"void f() {\n dbg(1.0; }\n", one, 2},
@@ -435,12 +449,7 @@ TEST(values_that_cannot_be_looked_at_are_refused_with_their_line)
          "in the body of a function", 7},
         {"//@ test\nvoid a(uint s) {\ncheck(dbg(true)); }\n", "a test has none", 3},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        assert_int_equal(read_dbg(cases[i].content), WHIT_ERROR_INPUT);
-        assert_int_equal(errors.count, 1);
-        assert_int_equal(errors.items[0].line, cases[i].line);
-        assert_non_null(strstr(errors.items[0].reason, cases[i].why));
-    }
+    refuse_all(read_dbg, cases, sizeof cases / sizeof *cases);
 }
 
 TEST(a_file_has_a_number_of_them_at_most)
@@ -458,10 +467,7 @@ TEST(a_file_has_a_number_of_them_at_most)
 TEST(tests_that_are_none_are_refused_with_their_line)
 {
     static const char form[] = "void NAME(uint seed)", outside[] = "nowhere else";
-    const struct {
-        const char *content, *why;
-        uint32_t line;
-    } cases[] = {
+    const struct refused cases[] = {
         {"void f() {}\n//@ test\n", form, 2},
         {"void f() {}\n//@ test\nvoid a(int seed) { check(true); }\n", form, 2},
         {"void f() {}\n//@ test\nbool a(uint seed) { check(true); }\n", form, 2},
@@ -478,12 +484,7 @@ TEST(tests_that_are_none_are_refused_with_their_line)
         {"void check(bool b) {}\n//@ test\nvoid a(uint s) { check(true); }\n", outside, 1},
         {"void f() {\n check(true); }\n", outside, 2},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-        if (read_tests(cases[i].content) != WHIT_ERROR_INPUT || errors.count != 1 ||
-            errors.items[0].line != cases[i].line || !strstr(errors.items[0].reason, cases[i].why))
-            fail_msg("%s: %u errors, %u: %s", cases[i].content, errors.count, errors.items[0].line,
-                     errors.items[0].reason);
-    }
+    refuse_all(read_tests, cases, sizeof cases / sizeof *cases);
 }
 
 TEST(a_file_without_tests_may_have_a_function_check)

@@ -24,6 +24,14 @@ static void run(const struct shader_code *code, uint32_t count, const int32_t ca
     device_close(device, &told);
 }
 
+static void assert_evaluated(const struct shader_code *code, const char *content)
+{
+    struct pipeline_params params = storage_params(code->words, code->bytes, 2, "user");
+    struct pipeline_info info;
+    if (!pipeline_count(&params, &info))
+        fail_msg("not evaluated: %s", content);
+}
+
 /* The kernel has fuel for 1000 iterations. */
 TEST_IN(loops_end, compiler_begin, compiler_end)
 {
@@ -132,7 +140,7 @@ TEST_IN(loops_are_left_by_returns, compiler_begin, compiler_end)
         for (int trust = 0; trust < 2; ++trust) {
             own_shader_code code = {0};
             struct answer answers[5];
-            assert_int_equal(compile_files(leaving[i].content, NULL, trust, &code), WHIT_OK);
+            assert_int_equal(compile_file(leaving[i].content, trust, &code), WHIT_OK);
             assert_valid(&code);
             for (int plain = 0; plain < 2; ++plain) {
                 assert_int_equal(plain ? setenv("WHIT_NO_SPECIALIZE", "1", 1)
@@ -146,10 +154,7 @@ TEST_IN(loops_are_left_by_returns, compiler_begin, compiler_end)
                 }
             }
             unsetenv("WHIT_NO_SPECIALIZE");
-            struct pipeline_params params = storage_params(code.words, code.bytes, 2, "user");
-            struct pipeline_info info;
-            if (!pipeline_count(&params, &info))
-                fail_msg("not evaluated: %s", leaving[i].content);
+            assert_evaluated(&code, leaving[i].content);
         }
     }
 }
@@ -174,10 +179,7 @@ TEST_IN(variables_begin_as_zero, compiler_begin, compiler_end)
         run(&code, 2, (const int32_t[][2]){{1, 1}, {30, 2}}, answers);
         if (answers[0].value != 1 || answers[1].value != 30)
             fail_msg("%u %u: %s", answers[0].value, answers[1].value, contents[i]);
-        struct pipeline_params params = storage_params(code.words, code.bytes, 2, "user");
-        struct pipeline_info info;
-        if (!pipeline_count(&params, &info))
-            fail_msg("not evaluated: %s", contents[i]);
+        assert_evaluated(&code, contents[i]);
     }
 }
 
@@ -191,8 +193,6 @@ TEST_IN(kernels_are_evaluated, compiler_begin, compiler_end)
     };
     for (size_t i = 0; i < sizeof contents / sizeof *contents; ++i) {
         own_shader_code code = must_compile(contents[i]);
-        struct pipeline_params params = storage_params(code.words, code.bytes, 2, "user");
-        struct pipeline_info info;
-        assert_true(pipeline_count(&params, &info));
+        assert_evaluated(&code, contents[i]);
     }
 }

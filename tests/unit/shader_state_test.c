@@ -4,13 +4,6 @@
 
 enum { WIDTH = 48, HEIGHT = 36, PIXELS = WIDTH * HEIGHT };
 
-static int begin(void **state)
-{
-    hooks_begin(state);
-    scene_open(WHIT_SCENES_DIR "/default.json");
-    return 0;
-}
-
 /* Draws with functions; `pixels` gets RGBA. */
 static void draw(const char *content, float pixels[PIXELS][4])
 {
@@ -26,7 +19,7 @@ static void draw(const char *content, float pixels[PIXELS][4])
 static float pixels[PIXELS][4], others[PIXELS][4];
 
 /* From a point of the floor straight up; what is met there cannot see below the floor. */
-TEST_IN(surfaces_that_trace_meets_are_shadowed, begin, hooks_end)
+TEST_IN(surfaces_that_trace_meets_are_shadowed, hooks_begin_default, hooks_end)
 {
     draw("vec3 shade(Surface s, Optics o, vec3 to_eye) {\n"
          " Surface met, back; float d, e; vec3 up = vec3(0.0, 1.0, 0.0);\n"
@@ -47,7 +40,7 @@ TEST_IN(surfaces_that_trace_meets_are_shadowed, begin, hooks_end)
 }
 
 /* Rays along a rounded surface would see shading normals that point away from them. */
-TEST_IN(normals_that_trace_meets_face_the_ray, begin, hooks_end)
+TEST_IN(normals_that_trace_meets_face_the_ray, hooks_begin_default, hooks_end)
 {
     draw("vec3 shade(Surface s, Optics o, vec3 to_eye) {\n"
          " float away = 0.0, met = 0.0;\n"
@@ -68,7 +61,7 @@ TEST_IN(normals_that_trace_meets_face_the_ray, begin, hooks_end)
     assert_true(some > PIXELS / 4);
 }
 
-TEST_IN(random_numbers_of_post_differ_and_repeat, begin, hooks_end)
+TEST_IN(random_numbers_of_post_differ_and_repeat, hooks_begin_default, hooks_end)
 {
     static const char content[] = "vec3 post(ivec2 at, vec3 color) { return vec3(random(0u), "
                                   "random(1u), ray_distance()); }\n";
@@ -86,7 +79,7 @@ TEST_IN(random_numbers_of_post_differ_and_repeat, begin, hooks_end)
 }
 
 /* Red at the first surface, green behind it. */
-TEST_IN(random_numbers_of_rays_that_go_straight_on_differ, begin, hooks_end)
+TEST_IN(random_numbers_of_rays_that_go_straight_on_differ, hooks_begin_default, hooks_end)
 {
     draw("vec3 shade(Surface s, Optics o, vec3 to_eye) { float x = random(0u);\n"
          " return vec3(bounces() == 0u ? x : 0.0, bounces() == 1u ? x : 0.0, 0.0); }\n"
@@ -102,7 +95,7 @@ TEST_IN(random_numbers_of_rays_that_go_straight_on_differ, begin, hooks_end)
     assert_true(pairs > 100);
 }
 
-TEST_IN(variables_are_set_before_there_is_a_pixel, begin, hooks_end)
+TEST_IN(variables_are_set_before_there_is_a_pixel, hooks_begin_default, hooks_end)
 {
     draw("uvec2 at = pixel();\nfloat k = random(1u), t = ray_distance(); vec3 d = ray_dir();\n"
          "vec3 post(ivec2 p, vec3 color) { return vec3(at.x + at.y, k, t + length(d)); }\n",
@@ -112,7 +105,7 @@ TEST_IN(variables_are_set_before_there_is_a_pixel, begin, hooks_end)
 }
 
 /* A shape that is there for some pixels only. */
-TEST_IN(intersect_knows_the_pixel, begin, hooks_end)
+TEST_IN(intersect_knows_the_pixel, hooks_begin_default, hooks_end)
 {
     draw("//@ box -50 -50 -50  50 50 50  0.01\n"
          "bool intersect(vec3 origin, vec3 dir, float far, out float t, out vec3 normal) {\n"
@@ -126,7 +119,7 @@ TEST_IN(intersect_knows_the_pixel, begin, hooks_end)
         assert_true((fabsf(pixels[i][0] - 0.5f) < 1e-4f) == (i % WIDTH < 24));
 }
 
-TEST_IN(surface_that_changes_nothing_changes_no_bit, begin, hooks_end)
+TEST_IN(surface_that_changes_nothing_changes_no_bit, hooks_begin_default, hooks_end)
 {
     const whit_renderer_params params = params_sized(WIDTH, HEIGHT, NULL);
     own_whit_renderer *renderer = renderer_of(&params);
@@ -135,7 +128,7 @@ TEST_IN(surface_that_changes_nothing_changes_no_bit, begin, hooks_end)
     assert_memory_equal(whit_image_floats(image), pixels, sizeof pixels);
 }
 
-TEST_IN(camera_directions_may_have_any_length, begin, hooks_end)
+TEST_IN(camera_directions_may_have_any_length, hooks_begin_default, hooks_end)
 {
     static const char *const factors[] = {"1e-38", "1e-30", "1e25", "3e37"};
     draw("void camera(vec2 at, inout vec3 origin, inout vec3 dir) {}\n", pixels);
