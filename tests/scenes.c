@@ -25,67 +25,59 @@ static uint32_t added(uint32_t index)
 
 static void *copy_of(const void *bytes, size_t count, size_t element_bytes)
 {
-    void *copy = array_alloc(count, element_bytes);
+    void *copy = array_copy(bytes, count, element_bytes);
     expect(copy, "no memory");
-    memcpy(copy, bytes, count * element_bytes);
     return copy;
 }
 
 /* ---- Meshes ---- */
 
-static struct scene_mesh made(whit_result result, struct scene_mesh mesh)
+static struct scene_mesh made(const struct scene_mesh *mesh, whit_result result)
 {
     expect(result == WHIT_OK, "a shape could not be made");
-    return mesh;
+    return *mesh;
 }
 
 struct scene_mesh mesh_box(double x, double y, double z)
 {
-    struct scene_mesh mesh = {0};
-    whit_result result = shape_box((double[]){x, y, z}, &mesh);
-    return made(result, mesh);
+    struct scene_mesh mesh;
+    return made(&mesh, shape_box((double[]){x, y, z}, &mesh));
 }
 
 struct scene_mesh mesh_plane(double size)
 {
-    struct scene_mesh mesh = {0};
-    whit_result result = shape_plane(size, size, 1, 1.0, &mesh);
-    return made(result, mesh);
+    struct scene_mesh mesh;
+    return made(&mesh, shape_plane(size, size, 1, 1.0, &mesh));
 }
 
 struct scene_mesh mesh_sphere(double radius, uint32_t segments, uint32_t rings)
 {
-    struct scene_mesh mesh = {0};
-    whit_result result = shape_sphere(radius, segments, rings, &mesh);
-    return made(result, mesh);
+    struct scene_mesh mesh;
+    return made(&mesh, shape_sphere(radius, segments, rings, &mesh));
 }
 
 struct scene_mesh mesh_icosphere(double radius, uint32_t level)
 {
-    struct scene_mesh mesh = {0};
-    whit_result result = shape_icosphere(radius, level, &mesh);
-    return made(result, mesh);
+    struct scene_mesh mesh;
+    return made(&mesh, shape_icosphere(radius, level, &mesh));
 }
 
 struct scene_mesh mesh_torus(double radius, double tube, uint32_t segments, uint32_t sides)
 {
-    struct scene_mesh mesh = {0};
-    whit_result result = shape_torus(radius, tube, segments, sides, &mesh);
-    return made(result, mesh);
+    struct scene_mesh mesh;
+    return made(&mesh, shape_torus(radius, tube, segments, sides, &mesh));
 }
 
 struct scene_mesh mesh_terrain(double size, double height, uint32_t steps, uint32_t seed)
 {
-    struct scene_mesh mesh = {0};
-    whit_result result = shape_terrain(size, height, steps, seed, &mesh);
-    return made(result, mesh);
+    struct scene_mesh mesh;
+    return made(&mesh, shape_terrain(size, height, steps, seed, &mesh));
 }
 
 struct scene_mesh mesh_balls(const double *spheres, uint32_t count)
 {
-    struct scene_mesh mesh = {0};
-    whit_result result = shape_balls(spheres, count, &mesh);
-    return made(result, mesh);
+    struct scene_mesh mesh;
+    return made(&mesh, shape_balls(spheres, count, &mesh));
 }
 
 struct scene_mesh mesh_zeroed(uint32_t vertex_count, uint32_t triangle_count)

@@ -176,18 +176,20 @@ static int die(void *user, void *to, child_write write)
 
 TEST(crashes_are_told_apart)
 {
-    struct child_reply reply;
-    int number = SIGABRT;
-    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_CRASHED);
-    assert_int_equal(reply.signal, SIGABRT);
-    assert_null(reply.data);
-    number = SIGSEGV; /* a sanitizer's handler must not get it */
-    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_CRASHED);
-    assert_int_equal(reply.signal, SIGSEGV);
-    number = SIGXCPU;
-    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_TIME);
-    number = SIGKILL;
-    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_MEMORY);
+    static const struct {
+        int number;
+        enum child_end end;
+    } rows[] = {{SIGABRT, CHILD_CRASHED},
+                {SIGSEGV, CHILD_CRASHED}, /* a sanitizer's handler must not get it */
+                {SIGXCPU, CHILD_TIME},
+                {SIGKILL, CHILD_MEMORY}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+        struct child_reply reply;
+        int number = rows[i].number;
+        assert_int_equal(child_run(&ordinary, die, &number, &reply), rows[i].end);
+        assert_int_equal(reply.signal, number);
+        assert_null(reply.data);
+    }
 }
 
 static int spin(void *user, void *to, child_write write)

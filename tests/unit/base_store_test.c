@@ -12,8 +12,8 @@
 #include "folder_fixture.h"
 
 static char kept_in[80]; /* whit's folder below XDG_CACHE_HOME, which is this test's folder */
-static uid_t
-    owner_of_next; /* owner that fstat gives from call `foreign_from` on; 0: the real one */
+/* Owner that fstat gives from call `foreign_from` on; 0: the real one. */
+static uid_t owner_of_next;
 static int foreign_from;
 static int64_t disk_bytes = -1; /* free bytes on the simulated disk; < 0: enough */
 static pid_t dies_at_write;     /* id of a process that ends in its next large write */
@@ -171,79 +171,65 @@ TEST_IN(damage_is_thrown_away, begin, folder_end)
     assert_true(is_kept("a", 1));
 }
 
-static void put_link(const char *name)
-{
-    assert_int_equal(symlink(in_folder("target"), path_of(name)), 0);
-}
+/* What may stand in the place of a file of ours. Only root makes devices: others get a link to one.
+ */
+enum entry { LINK, NOWHERE, SECOND_NAME, PIPE, FOLDER, SOCKET, DEVICE, WRITABLE, ENTRIES };
 
-static void put_nowhere(const char *name)
-{
-    assert_int_equal(symlink("/nowhere/at-all", path_of(name)), 0);
-}
-
-static void put_second_name(const char *name)
-{
-    assert_int_equal(link(in_folder("target"), path_of(name)), 0);
-}
-
-static void put_pipe(const char *name)
-{
-    assert_int_equal(mkfifo(path_of(name), 0600), 0);
-}
-
-static void put_folder(const char *name)
-{
-    assert_int_equal(mkdir(path_of(name), 0700), 0);
-}
-
-static void put_socket(const char *name)
+static int put_socket(const char *path)
 {
     struct sockaddr_un address = {.sun_family = AF_UNIX};
-    snprintf(address.sun_path, sizeof address.sun_path, "%.100s", path_of(name));
+    snprintf(address.sun_path, sizeof address.sun_path, "%.100s", path);
     int fd = socket(AF_UNIX, SOCK_STREAM, 0);
-    assert_int_equal(bind(fd, (struct sockaddr *)&address, sizeof address), 0);
+    int result = bind(fd, (struct sockaddr *)&address, sizeof address);
     close(fd);
+    return result;
 }
 
-static void put_device(const char *name)
+static int put_entry(enum entry entry, const char *path)
 {
-    put_nowhere(name); /* only root makes devices */
-    assert_int_equal(unlink(path_of(name)), 0);
-    if (mknod(path_of(name), S_IFCHR | 0600, (1 << 8) | 5) != 0) /* /dev/zero */
-        assert_int_equal(symlink("/dev/zero", path_of(name)), 0);
-}
-
-static void put_writable(const char *name)
-{
-    keep(name, 1);
-    assert_int_equal(chmod(path_of(name), 0622), 0);
+    switch (entry) {
+    case LINK:
+        return symlink(in_folder("target"), path);
+    case NOWHERE:
+        return symlink("/nowhere/at-all", path);
+    case SECOND_NAME:
+        return link(in_folder("target"), path);
+    case PIPE:
+        return mkfifo(path, 0600);
+    case FOLDER:
+        return mkdir(path, 0700);
+    case SOCKET:
+        return put_socket(path);
+    case DEVICE: /* /dev/zero */
+        return mknod(path, S_IFCHR | 0600, (1 << 8) | 5) && symlink("/dev/zero", path);
+    default:
+        keep("a", 1);
+        return chmod(path, 0622);
+    }
 }
 
 /* Entries that are no regular files of this user are neither opened nor followed; they are removed,
    and a file can be kept in their place. */
 TEST_IN(what_is_no_file_of_ours_is_thrown_away, begin, folder_end)
 {
-    static void (*const puts[])(const char *) = {put_link,   put_nowhere, put_second_name,
-                                                 put_pipe,   put_folder,  put_socket,
-                                                 put_device, put_writable};
     char text[2 * BYTES];
     struct stat info;
     keep("a", 1); /* links lead to a valid file, which would be accepted */
     assert_int_equal(rename(path_of("a"), in_folder("target")), 0);
-    for (size_t i = 0; i < sizeof puts / sizeof *puts; ++i) {
-        puts[i]("a");
+    for (enum entry i = 0; i < ENTRIES; ++i) {
+        assert_int_equal(put_entry(i, path_of("a")), 0);
         opened = 0;
         assert_false(is_kept("a", 1));
         assert_int_equal(opened, 0);
         assert_false(exists("a"));
-        if (puts[i] != put_folder) {
-            puts[i]("a");
-            keep("a", 2);
-            assert_true(is_kept("a", 2));
-            assert_int_equal(lstat(path_of("a"), &info), 0);
-            assert_true(S_ISREG(info.st_mode));
-            assert_int_equal(unlink(path_of("a")), 0);
-        }
+        if (i == FOLDER)
+            continue;
+        assert_int_equal(put_entry(i, path_of("a")), 0);
+        keep("a", 2);
+        assert_true(is_kept("a", 2));
+        assert_int_equal(lstat(path_of("a"), &info), 0);
+        assert_true(S_ISREG(info.st_mode));
+        assert_int_equal(unlink(path_of("a")), 0);
     }
     FILE *file = fopen(in_folder("target"), "rb");
     assert_non_null(file);

@@ -2,14 +2,8 @@
 #ifndef TESTS_PICTURE_FIXTURE_H
 #define TESTS_PICTURE_FIXTURE_H
 
+#include "base/vec.h"
 #include "render_fixture.h"
-
-static inline void cross_of(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 static inline void set_sky(struct scene *scene, float zenith, float horizon, float ground)
 {

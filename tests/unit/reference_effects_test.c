@@ -169,26 +169,6 @@ static struct scene *all_effects(void)
     return scene;
 }
 
-struct difference {
-    uint32_t over; /* 1e-3 of the displayed range, or of the value where it is brighter */
-    double largest;
-};
-
-static struct difference compare(const struct image *a, const struct image *b)
-{
-    struct difference d = {0};
-    for (size_t i = 0; i < (size_t)a->width * a->height; ++i) {
-        double max = 0.0;
-        for (size_t c = 4 * i; c < 4 * i + 3; ++c) {
-            double x = (double)a->pixels[c], y = (double)b->pixels[c];
-            max = fmax(max, fabs(x - y) / fmax(1.0, fabs(y)));
-        }
-        d.over += max > 1e-3;
-        d.largest = fmax(d.largest, max);
-    }
-    return d;
-}
-
 TEST(every_effect_agrees_with_the_device)
 {
     struct reference_params params = {.picture = {.width = SIDE,
@@ -203,8 +183,8 @@ TEST(every_effect_agrees_with_the_device)
     own_picture whole = reference_picture(f.accel, &params);
     params.whole_stops = false;
     own_picture ideal = reference_picture(f.accel, &params);
-    struct difference d = compare(&device, &whole.color),
-                      stops = compare(&whole.color, &ideal.color);
+    struct difference d = difference_of(&device, &whole.color),
+                      stops = difference_of(&whole.color, &ideal.color);
     print_message("  %u of %u pixels over 1e-3, largest %.2g; for whole stops %u, largest %.2g\n",
                   d.over, SIDE * SIDE, d.largest, stops.over, stops.largest);
     assert_true(d.over * 500 <= SIDE * SIDE); /* 0.2 %, for edges */
@@ -234,23 +214,11 @@ static struct scene *touching_smooth_bodies(void)
     return scene;
 }
 
-/* Renders and destroys a scene. At most 0.2 % of the pixels may differ, for edges. */
-static void assert_agrees(const char *name, struct scene *scene)
-{
-    struct reference_params params = {.picture = {.width = SIDE, .height = SIDE, .depth = 3},
-                                      .whole_stops = true};
-    own_fixture f = fixture_open(scene, NULL, &params.picture);
-    own_image device = render(&f);
-    own_picture reference = reference_picture(f.accel, &params);
-    struct difference d = compare(&device, &reference.color);
-    print_message("  %s: %u of %u pixels over 1e-3, largest %.2g\n", name, d.over, SIDE * SIDE,
-                  d.largest);
-    assert_true(d.over * 500 <= SIDE * SIDE);
-}
+static const whit_renderer_params usual = {.width = SIDE, .height = SIDE, .depth = 3};
 
 TEST(touching_smooth_bodies_agree)
 {
-    assert_agrees("touching", touching_smooth_bodies());
+    assert_agrees("touching", touching_smooth_bodies(), NULL, usual);
 }
 
 /* ---- Where floats are short of digits ---- */
@@ -310,11 +278,11 @@ static struct scene *far_coordinates(void)
 
 TEST(scarce_digits_agree)
 {
-    assert_agrees("far coordinates", far_coordinates());
-    assert_agrees("far repeated", far_offset(SCENE_WRAP_REPEAT));
-    assert_agrees("far mirrored", far_offset(SCENE_WRAP_MIRROR));
-    assert_agrees("narrow spot", narrow_spot());
-    assert_agrees("far lamp", far_lamp());
+    assert_agrees("far coordinates", far_coordinates(), NULL, usual);
+    assert_agrees("far repeated", far_offset(SCENE_WRAP_REPEAT), NULL, usual);
+    assert_agrees("far mirrored", far_offset(SCENE_WRAP_MIRROR), NULL, usual);
+    assert_agrees("narrow spot", narrow_spot(), NULL, usual);
+    assert_agrees("far lamp", far_lamp(), NULL, usual);
 }
 
 /* A floor in the whole view, with the opacity `texel` / 255 times `alpha`. */

@@ -4,8 +4,6 @@
 #include "scene/pose.h"
 #include "unit.h"
 
-static const double pi = 3.14159265358979323846;
-
 struct drawn {
     struct scene *scene;
     struct accel *accel;
@@ -121,7 +119,7 @@ TEST(glass_follows_fresnel_and_snell)
 TEST(light_is_reflected_whole_from_inside)
 {
     for (int beyond = 0; beyond < 2; ++beyond) {
-        double angle = (41.81 + (beyond ? 0.02 : -0.02)) * pi / 180.0;
+        double angle = (41.81 + (beyond ? 0.02 : -0.02)) * PI / 180.0;
         struct scene *scene =
             dark_scene((double[]){0, 0, 0}, (double[]){sin(angle), 0, -cos(angle)});
         add_object(scene, mesh_box(100, 100, 8), clear_glass(1.5f, 0), 0, 0, 0);
@@ -253,7 +251,7 @@ TEST(emitters_follow_their_form_factor)
                                                 .edge_v = {0, 0, 3},
                                                 .color = {5, 5, 5}});
     double a = 0.5, b = 0.75, ra = sqrt(1 + a * a), rb = sqrt(1 + b * b);
-    double factor = 4 / (2 * pi) * (a / ra * atan(b / ra) + b / rb * atan(a / rb));
+    double factor = 4 / (2 * PI) * (a / ra * atan(b / ra) + b / rb * atan(a / rb));
     assert_close(pixel_light(scene, &of_one_pixel), 5 * factor, 2e-6);
 }
 

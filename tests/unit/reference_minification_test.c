@@ -70,19 +70,6 @@ static struct scene *far_textures(void)
 
 /* ---- Comparison with the reference ---- */
 
-static double share_over(const struct image *a, const struct image *b, double limit)
-{
-    size_t pixels = (size_t)a->width * a->height;
-    double over = 0.0;
-    for (size_t i = 0; i < pixels; ++i) {
-        double max = 0.0;
-        for (size_t c = 4 * i; c < 4 * i + 3; ++c)
-            max = fmax(max, fabs((double)a->pixels[c] - (double)b->pixels[c]));
-        over += max > limit;
-    }
-    return over / (double)pixels;
-}
-
 static double rmse(const struct image *a, const struct image *b)
 {
     size_t values = (size_t)a->width * a->height * 4;
@@ -95,19 +82,12 @@ static double rmse(const struct image *a, const struct image *b)
 static void check(const char *what, const whit_accel_params *trees, void (*change)(struct scene *),
                   uint32_t samples)
 {
-    const struct reference_params params = {
-        .picture = {.width = SIDE, .height = SIDE, .depth = 4, .sampling.count = samples},
-        .whole_stops = true};
     struct scene *scene = far_textures();
     if (change)
         change(scene);
-    own_fixture f = fixture_open(scene, trees, &params.picture);
-    own_image device = render(&f);
-    own_picture reference = reference_picture(f.accel, &params);
-    double over = share_over(&device, &reference.color, 1e-3);
-    print_message("  %s: %.2f %% of pixels over 1e-3, RMSE %.2g\n", what, 100.0 * over,
-                  rmse(&device, &reference.color));
-    assert_true(over <= 0.002); /* for edges */
+    assert_agrees(what, scene, trees,
+                  (whit_renderer_params){
+                      .width = SIDE, .height = SIDE, .depth = 4, .sampling.count = samples});
 }
 
 static void make_orthographic(struct scene *scene)

@@ -9,7 +9,7 @@
 enum { WIDTH = 64, HEIGHT = 48 };
 
 /* The difference of the device's picture of a scene from the reference. */
-struct difference {
+struct compared {
     uint32_t over;      /* pixels further than 1e-3 apart in some channel */
     uint32_t other_ids; /* pixels whose first hit is another primitive */
     uint32_t edges;     /* pixels of `over` that are at edges: see is_at_edge */
@@ -76,10 +76,10 @@ static bool is_at_edge(const struct moved *moved, uint32_t x, uint32_t y, const 
     return false;
 }
 
-static struct difference compare(const struct moved *moved, const struct picture *device,
-                                 const struct picture *reference)
+static struct compared compare(const struct moved *moved, const struct picture *device,
+                               const struct picture *reference)
 {
-    struct difference d = {.other_ids = pixels_unlike(&device->ids, &reference->ids)};
+    struct compared d = {.other_ids = pixels_unlike(&device->ids, &reference->ids)};
     for (uint32_t i = 0; i < WIDTH * HEIGHT; ++i) {
         const float *a = &device->color.pixels[4 * (size_t)i];
         const float *b = &reference->color.pixels[4 * (size_t)i];
@@ -94,14 +94,14 @@ static struct difference compare(const struct moved *moved, const struct picture
     return d;
 }
 
-static struct difference compare_scene(struct scene *scene, const char *name)
+static struct compared compare_scene(struct scene *scene, const char *name)
 {
     const struct reference_params params = {
         .picture = {.width = WIDTH, .height = HEIGHT, .depth = 6}, .whole_stops = true};
     own_fixture f = fixture_open(scene, &(whit_accel_params){0}, &params.picture);
     own_picture device = render_picture(&f), reference = reference_picture(f.accel, &params);
     struct moved moved = move_camera(f.accel, &params);
-    struct difference d = compare(&moved, &device, &reference);
+    struct compared d = compare(&moved, &device, &reference);
     print_message("  %-20s %2u of %u pixels over 1e-3, %u of them at edges; %u other ids; largest "
                   "%.2g; reference %.0f ms\n",
                   name, d.over, WIDTH * HEIGHT, d.edges, d.other_ids, d.largest,
@@ -136,7 +136,7 @@ TEST(default_scenes_agree)
         if (!is_wanted(name))
             continue;
         assert_int_equal(load_scene(&fixture_log, paths.gl_pathv[i], &load, &scene), WHIT_OK);
-        struct difference d = compare_scene(scene, name);
+        struct compared d = compare_scene(scene, name);
         assert_true(d.over * 100 <= WIDTH * HEIGHT);
         assert_int_equal(d.edges, d.over);
         ++compared;

@@ -7,8 +7,6 @@
 #include "twin/traverse.h"
 #include "unit.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* Adds a ball that is drawn with the value 1 everywhere. */
 static void add_marker(struct scene *scene, double radius, double x, double y, double z)
 {
@@ -206,9 +204,9 @@ TEST(markers_are_where_they_should)
     for (int i = 0; i < 3; ++i)
         forward[i] = target[i] - eye[i];
     unit_of(forward);
-    cross_of(forward, up, right);
+    double3_cross(forward, up, right);
     unit_of(right);
-    cross_of(right, forward, above);
+    double3_cross(right, forward, above);
     for (size_t p = 0; p < sizeof places / sizeof *places; ++p) {
         double longitude = places[p][0] * PI / 180.0, latitude = places[p][1] * PI / 180.0, at[3];
         for (int i = 0; i < 3; ++i)

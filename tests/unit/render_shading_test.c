@@ -283,11 +283,11 @@ static struct scene_mesh square_across(const double n[3])
     int min = fabs(n[0]) < fabs(n[1]) ? (fabs(n[0]) < fabs(n[2]) ? 0 : 2)
                                       : (fabs(n[1]) < fabs(n[2]) ? 1 : 2);
     const double axis[3] = {min == 0, min == 1, min == 2};
-    cross_of(n, axis, aside);
+    double3_cross(n, axis, aside);
     double length = sqrt(aside[0] * aside[0] + aside[1] * aside[1] + aside[2] * aside[2]);
     for (int k = 0; k < 3; ++k)
         aside[k] /= length;
-    cross_of(n, aside, up);
+    double3_cross(n, aside, up);
     for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
         float *p = &mesh.positions[3 * i];
         double s = (double)p[0], t = (double)p[2];

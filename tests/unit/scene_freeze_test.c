@@ -7,14 +7,6 @@
 #include "scene/shapes.h"
 #include "unit.h"
 
-static void *copy_of(const void *data, size_t size_bytes)
-{
-    void *copy = malloc(size_bytes);
-    assert_non_null(copy);
-    memcpy(copy, data, size_bytes);
-    return copy;
-}
-
 static struct scene_mesh make_mesh(const float *positions, uint32_t vertices,
                                    const uint32_t *indices, uint32_t triangles)
 {
@@ -22,8 +14,8 @@ static struct scene_mesh make_mesh(const float *positions, uint32_t vertices,
         .name = string_copy("m"),
         .vertex_count = vertices,
         .triangle_count = triangles,
-        .positions = copy_of(positions, vertices * 3 * sizeof(float)),
-        .indices = copy_of(indices, triangles * 3 * sizeof(uint32_t)),
+        .positions = array_copy(positions, vertices, 3 * sizeof(float)),
+        .indices = array_copy(indices, triangles, 3 * sizeof(uint32_t)),
     };
 }
 
@@ -44,7 +36,7 @@ TEST(bad_triangles_are_dropped_and_counted)
                                 5, 1, 6, 2, 0, 7, 8, 0, 9, 10, 2, 1,  0};
     struct scene_mesh mesh = make_mesh(p, 11, indices, 9);
     const struct scene_group groups[] = {{string_copy("a"), 0, 3}, {string_copy("b"), 3, 6}};
-    mesh.groups = copy_of(groups, sizeof groups);
+    mesh.groups = array_copy(groups, 1, sizeof groups);
     mesh.group_count = 2;
     mesh.materials = calloc(9, sizeof(uint32_t));
     own_scene *scene = scene_ready(scene_of(mesh));
@@ -85,8 +77,8 @@ TEST(bad_spheres_are_dropped_and_counted)
                              0, 0,          0, 2e18f, 9, 9, 9, 1e-30f,     4, 5, 6, 1e17f};
     const uint32_t materials[] = {0, 0, 0, 0, 0, 0, 0, 1, 0};
     struct scene_mesh mesh = {.name = string_copy("balls"), .sphere_count = 9};
-    mesh.spheres = copy_of(spheres, sizeof spheres);
-    mesh.materials = copy_of(materials, sizeof materials);
+    mesh.spheres = array_copy(spheres, 1, sizeof spheres);
+    mesh.materials = array_copy(materials, 1, sizeof materials);
     own_scene *scene = scene_of(mesh);
     scene_put_material(scene, material_grey("grey"));
     scene_put_material(scene, material_grey("grey"));
@@ -115,7 +107,7 @@ TEST(mixed_meshes_are_refused)
     const float sphere[] = {0, 0, 0, 1};
     struct scene_mesh mesh = mesh_box(2, 2, 2);
     mesh.sphere_count = 1;
-    mesh.spheres = copy_of(sphere, sizeof sphere);
+    mesh.spheres = array_copy(sphere, 1, sizeof sphere);
     assert_refused(scene_of(mesh));
 }
 
@@ -126,8 +118,8 @@ TEST(attributes_are_mended)
     const float normals[] = {0, 0, 0, (float)NAN, 0, 1, 0, -3, 0, 0, 0, 0};
     const float uvs[] = {0.5f, 0.25f, (float)INFINITY, 0, 2e9f, 1, 0, 0};
     struct scene_mesh mesh = make_mesh(p, 4, indices, 1);
-    mesh.normals = copy_of(normals, sizeof normals);
-    mesh.uvs[0] = copy_of(uvs, sizeof uvs);
+    mesh.normals = array_copy(normals, 1, sizeof normals);
+    mesh.uvs[0] = array_copy(uvs, 1, sizeof uvs);
     own_scene *scene = scene_ready(scene_of(mesh));
     const struct scene_mesh *m = &scene->meshes[0];
     const float mended[] = {0, 0, 1, 0, 0, 1, 0, -1, 0, 0, 0, 1};
@@ -145,7 +137,7 @@ static bool keeps_normals(float side, float lean)
     const uint32_t indices[] = {0, 1, 2};
     const float normals[] = {0, 0, side, 0, 0, side, lean, 0, side};
     struct scene_mesh mesh = make_mesh(p, 3, indices, 1);
-    mesh.normals = copy_of(normals, sizeof normals);
+    mesh.normals = array_copy(normals, 1, sizeof normals);
     own_scene *scene = scene_ready(scene_of(mesh));
     return scene->meshes[0].normals != NULL;
 }

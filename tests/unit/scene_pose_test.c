@@ -7,37 +7,26 @@
 #include "scene/shapes.h"
 #include "unit.h"
 
-static float *copy_of(const float *values, size_t count)
-{
-    float *copy = malloc(count * sizeof *copy);
-    assert_non_null(copy);
-    memcpy(copy, values, count * sizeof *copy);
-    return copy;
-}
-
 /* A box below a moving node below a still one at x = 10. */
 static struct scene *raw_scene(enum scene_path path, enum scene_interpolation interpolation,
-                               const float *times, uint32_t keys, const float *values,
-                               size_t value_count)
+                               const float *times, uint32_t keys, const float *values)
 {
     struct scene *scene = scene_begin(NULL, "test");
     uint32_t still = scene_put_node(scene, SCENE_NONE, 10, 0, 0);
     uint32_t moving = scene_put_node(scene, still, 0, 0, 0);
     scene_put(scene, mesh_box(2, 2, 2), &(struct put){.name = "box", .node = &moving});
-    scene_add_channel(scene, (struct scene_channel){.node = moving,
-                                                    .path = path,
-                                                    .interpolation = interpolation,
-                                                    .key_count = keys,
-                                                    .times_s = copy_of(times, keys),
-                                                    .values = copy_of(values, value_count)});
+    struct scene_channel channel = {
+        .node = moving, .path = path, .interpolation = interpolation, .key_count = keys};
+    channel.times_s = array_copy(times, keys, sizeof *times);
+    channel.values = array_copy(values, keys, scene_channel_width(&channel) * sizeof *values);
+    scene_add_channel(scene, channel);
     return scene;
 }
 
 static struct scene *moving_scene(enum scene_path path, enum scene_interpolation interpolation,
-                                  const float *times, uint32_t keys, const float *values,
-                                  size_t value_count)
+                                  const float *times, uint32_t keys, const float *values)
 {
-    return scene_ready(raw_scene(path, interpolation, times, keys, values, value_count));
+    return scene_ready(raw_scene(path, interpolation, times, keys, values));
 }
 
 static struct affine matrix_at(const struct scene *scene, double time_s)
@@ -56,7 +45,7 @@ static void assert_near(double a, double b)
 TEST(linear_and_held_ends)
 {
     const float times[] = {1, 2, 4}, values[] = {0, 0, 0, 4, 2, 0, 4, 2, 8};
-    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 3, values, 9);
+    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 3, values);
     assert_near((double)scene->time_begin_s, 1.0);
     assert_near((double)scene->time_end_s, 4.0);
     assert_near(matrix_at(scene, -5.0).m[3], 10.0);
@@ -70,7 +59,7 @@ TEST(linear_and_held_ends)
 TEST(steps_hold_until_the_next_key)
 {
     const float times[] = {0, 1, 2}, values[] = {1, 0, 0, 2, 0, 0, 3, 0, 0};
-    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_STEP, times, 3, values, 9);
+    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_STEP, times, 3, values);
     assert_near(matrix_at(scene, 0.999).m[3], 11.0);
     assert_near(matrix_at(scene, 1.0).m[3], 12.0);
     assert_near(matrix_at(scene, 1.999).m[3], 12.0);
@@ -87,7 +76,7 @@ TEST(a_key_begins_at_its_time_in_double)
             times[i] = (float)(i / fps[f]);
             values[3 * i] = (float)i;
         }
-        own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_STEP, times, 40, values, 120);
+        own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_STEP, times, 40, values);
         for (uint32_t i = 0; i < 40; ++i)
             assert_near(matrix_at(scene, i / fps[f]).m[3], 10.0 + i);
     }
@@ -99,7 +88,7 @@ TEST(cubic_is_hermite)
 {
     const float times[] = {0, 2};
     const float values[] = {7, 7, 7, 0, 0, 0, 3, 0, 0, 5, 0, 0, 1, 0, 0, 7, 7, 7};
-    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_CUBIC, times, 2, values, 18);
+    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_CUBIC, times, 2, values);
     for (int i = 1; i < 8; ++i) {
         double s = i / 8.0, s2 = s * s, s3 = s2 * s;
         double expected =
@@ -115,7 +104,7 @@ TEST(rotation_is_slerp_by_the_shorter_way)
     /* 0 to 90 degrees about y, the second key written with its sign turned. */
     const float half = 0.70710678f, times[] = {0, 1};
     const float values[] = {0, 0, 0, 1, 0, -half, 0, -half};
-    own_scene *scene = moving_scene(SCENE_PATH_ROTATION, SCENE_LINEAR, times, 2, values, 8);
+    own_scene *scene = moving_scene(SCENE_PATH_ROTATION, SCENE_LINEAR, times, 2, values);
     for (int i = 0; i <= 4; ++i) {
         double angle = i / 4.0 * 1.5707963267948966;
         struct affine matrix = matrix_at(scene, i / 4.0);
@@ -128,7 +117,7 @@ TEST(rotation_is_slerp_by_the_shorter_way)
 TEST(rotation_between_equal_keys)
 {
     const float times[] = {0, 1}, values[] = {0, 0, 0, 2, 0, 0, 0, 2};
-    own_scene *scene = moving_scene(SCENE_PATH_ROTATION, SCENE_LINEAR, times, 2, values, 8);
+    own_scene *scene = moving_scene(SCENE_PATH_ROTATION, SCENE_LINEAR, times, 2, values);
     struct affine matrix = matrix_at(scene, 0.5);
     assert_near(matrix.m[0], 1.0);
     assert_near(matrix.m[5], 1.0);
@@ -138,8 +127,8 @@ TEST(rotation_between_equal_keys)
 TEST(what_floats_cannot_place_is_refused_at_its_time)
 {
     const float times[] = {0, 2}, near[] = {0, 0, 0, 4e29f, 0, 0}, far[] = {0, 0, 0, 4e30f, 0, 0};
-    own_scene *reached = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, near, 6);
-    own_scene *missed = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, far, 6);
+    own_scene *reached = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, near);
+    own_scene *missed = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, far);
     struct scene_pose pose;
     assert_true(matrix_at(reached, 2.0).m[3] > 3.9e29);
     assert_near(matrix_at(missed, 0.0).m[3], 10.0);
@@ -149,7 +138,7 @@ TEST(what_floats_cannot_place_is_refused_at_its_time)
 TEST(vanishing_scale_keeps_an_inverse)
 {
     const float times[] = {0, 1}, values[] = {0, 0, 0, 1, 1, 1};
-    own_scene *scene = moving_scene(SCENE_PATH_SCALE, SCENE_LINEAR, times, 2, values, 6);
+    own_scene *scene = moving_scene(SCENE_PATH_SCALE, SCENE_LINEAR, times, 2, values);
     assert_true(matrix_at(scene, 0.0).m[0] > 0.0 && matrix_at(scene, 0.0).m[0] < 1e-5);
     assert_near(matrix_at(scene, 0.5).m[0], 0.5);
 }
@@ -179,7 +168,7 @@ TEST(flat_instances_are_never_hidden)
     static const float turn[] = {0, 0, 0, 1, 0, 1, 0, 0}, grow[] = {0, 0, 0, 1, 1, 1};
     for (int i = 0; i < 2; ++i) {
         own_scene *scene = raw_scene(i ? SCENE_PATH_ROTATION : SCENE_PATH_SCALE, SCENE_LINEAR,
-                                     (float[]){0, 1}, 2, i ? turn : grow, i ? 8 : 6);
+                                     (float[]){0, 1}, 2, i ? turn : grow);
         scene->nodes[0].scale[2] = 0.0;
         assert_int_equal(scene_freeze(scene), WHIT_OK);
         assert_int_equal(scene->instance_count, 0);
@@ -202,7 +191,7 @@ TEST(flat_instances_are_never_hidden)
 TEST(unordered_times_are_dropped)
 {
     const float times[] = {0, 0}, values[] = {5, 0, 0, 6, 0, 0};
-    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
+    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values);
     assert_int_equal(scene->channel_count, 0);
     assert_near(matrix_at(scene, 0.0).m[3], 10.0);
 }
@@ -210,7 +199,7 @@ TEST(unordered_times_are_dropped)
 TEST(lights_cameras_and_bounds_follow_their_nodes)
 {
     const float times[] = {0, 1}, values[] = {0, 0, 0, 0, 4, 0};
-    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values, 6);
+    own_scene *scene = moving_scene(SCENE_PATH_TRANSLATION, SCENE_LINEAR, times, 2, values);
     scene->frozen = false; /* so that the test can change the scene */
     scene_add_light(scene, (struct scene_light){.kind = WHIT_LIGHT_POINT,
                                                 .node = 1,

@@ -1,4 +1,5 @@
 /* Shapes made by formula: exact counts, closed surfaces, outward faces, normals that agree. */
+#include "base/vec.h"
 #include "scene/shapes.h"
 #include "unit.h"
 
@@ -40,14 +41,10 @@ static double volume(const struct scene_mesh *mesh)
 {
     double sum = 0.0;
     for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
-        const float *p[3];
-        for (uint32_t i = 0; i < 3; ++i)
-            p[i] = mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)t + i];
-        for (int i = 0; i < 3; ++i) {
-            int j = (i + 1) % 3, k = (i + 2) % 3;
-            sum += (double)p[0][i] *
-                   ((double)p[1][j] * (double)p[2][k] - (double)p[1][k] * (double)p[2][j]);
-        }
+        double p[3][3], across[3];
+        scene_mesh_corners(mesh, t, p);
+        double3_cross(p[1], p[2], across);
+        sum += double3_dot(p[0], across);
     }
     return sum / 6.0;
 }
@@ -57,24 +54,21 @@ static void assert_normals_agree(const struct scene_mesh *mesh)
 {
     for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
         const uint32_t *index = mesh->indices + 3 * (size_t)t;
-        const float *p = mesh->positions + 3 * (size_t)index[0];
-        const float *q = mesh->positions + 3 * (size_t)index[1];
-        const float *r = mesh->positions + 3 * (size_t)index[2];
-        double sum = 0.0;
+        double p[3][3], edges[2][3], n[3], sum = 0.0;
+        scene_mesh_corners(mesh, t, p);
         for (int i = 0; i < 3; ++i) {
-            int j = (i + 1) % 3, k = (i + 2) % 3;
-            double n = (double)(q[j] - p[j]) * (double)(r[k] - p[k]) -
-                       (double)(q[k] - p[k]) * (double)(r[j] - p[j]);
-            for (int corner = 0; corner < 3; ++corner)
-                sum += n * (double)mesh->normals[3 * (size_t)index[corner] + (size_t)i];
+            edges[0][i] = p[1][i] - p[0][i];
+            edges[1][i] = p[2][i] - p[0][i];
         }
+        double3_cross(edges[0], edges[1], n);
+        for (size_t i = 0; i < 9; ++i)
+            sum += n[i % 3] * (double)mesh->normals[3 * (size_t)index[i / 3] + i % 3];
         assert_true(sum > 0.0);
     }
     for (uint32_t i = 0; i < mesh->vertex_count; ++i) {
         const float *n = mesh->normals + 3 * (size_t)i;
-        double length = sqrt((double)n[0] * (double)n[0] + (double)n[1] * (double)n[1] +
-                             (double)n[2] * (double)n[2]);
-        assert_true(fabs(length - 1.0) < 1e-6);
+        assert_true(fabs(double3_length((double[]){(double)n[0], (double)n[1], (double)n[2]}) -
+                         1.0) < 1e-6);
     }
 }
 
@@ -129,7 +123,7 @@ TEST(box_pictures_stand_upright)
 TEST(spheres)
 {
     struct scene_mesh mesh;
-    double full = 4.0 / 3.0 * 3.14159265358979 * 8.0;
+    double full = 4.0 / 3.0 * PI * 8.0;
     assert_int_equal(shape_sphere(2.0, 3, 2, &mesh), WHIT_OK);
     check_closed(&mesh, 6, 0.1 * full, full);
     assert_int_equal(shape_sphere(2.0, 64, 32, &mesh), WHIT_OK);
@@ -144,7 +138,6 @@ TEST(spheres)
 TEST(rings_and_rods)
 {
     struct scene_mesh mesh;
-    double pi = 3.14159265358979;
     assert_int_equal(shape_torus(3.0, 1.0, 64, 32, &mesh), WHIT_OK);
     /* On the outside v grows downwards, as in pictures; it is 1 and 0 at half height. */
     for (uint32_t i = 0; i < mesh.vertex_count; ++i) {
@@ -152,13 +145,13 @@ TEST(rings_and_rods)
         if (p[0] * p[0] + p[2] * p[2] > 9.1f)
             assert_true(p[1] > 0.01f ? uv[1] > 0.5f : p[1] > -0.01f || uv[1] < 0.5f);
     }
-    check_closed(&mesh, 4096, 0.98 * 6.0 * pi * pi, 6.0 * pi * pi);
+    check_closed(&mesh, 4096, 0.98 * 6.0 * PI * PI, 6.0 * PI * PI);
     assert_int_equal(shape_cylinder(1.0, 1.0, 2.0, 64, &mesh), WHIT_OK);
-    check_closed(&mesh, 256, 0.99 * 2.0 * pi, 2.0 * pi);
+    check_closed(&mesh, 256, 0.99 * 2.0 * PI, 2.0 * PI);
     assert_int_equal(shape_cylinder(1.0, 0.0, 3.0, 64, &mesh), WHIT_OK);
-    check_closed(&mesh, 128, 0.99 * pi, pi);
+    check_closed(&mesh, 128, 0.99 * PI, PI);
     assert_int_equal(shape_cylinder(1.0, 2.0, 3.0, 64, &mesh), WHIT_OK);
-    check_closed(&mesh, 256, 0.99 * 7.0 * pi, 7.0 * pi);
+    check_closed(&mesh, 256, 0.99 * 7.0 * PI, 7.0 * PI);
 }
 
 TEST(open_shapes)
@@ -230,14 +223,6 @@ TEST(atrium)
     check_open(&mesh, 64616);
 }
 
-static double distance(const double *a, const double *b)
-{
-    double sum = 0.0;
-    for (int i = 0; i < 3; ++i)
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return sqrt(sum);
-}
-
 TEST(sphereflake)
 {
     own_memory double *spheres = NULL;
@@ -247,13 +232,13 @@ TEST(sphereflake)
     for (uint32_t i = 1; i < count; ++i) {
         const double *s = spheres + 4 * (size_t)i, *parent = spheres + 4 * (size_t)((i - 1) / 9);
         assert_true(fabs(s[3] - parent[3] / 3.0) < 1e-12);
-        assert_true(fabs(distance(s, parent) - (s[3] + parent[3])) < 1e-12);
+        assert_true(fabs(double3_distance(s, parent) - (s[3] + parent[3])) < 1e-12);
     }
     /* Touching at most: no two spheres reach into each other. */
     for (uint32_t i = 0; i < count; ++i) {
         for (uint32_t k = i + 1; k < 10; ++k) {
             const double *a = spheres + 4 * (size_t)i, *b = spheres + 4 * (size_t)k;
-            assert_true(distance(a, b) > a[3] + b[3] - 1e-12);
+            assert_true(double3_distance(a, b) > a[3] + b[3] - 1e-12);
         }
     }
 }

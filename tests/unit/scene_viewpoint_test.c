@@ -46,36 +46,24 @@ static const struct scene_camera *camera_of(struct scene *scene, double forward[
     assert_int_equal(scene_freeze(scene), WHIT_OK);
     assert_int_equal(scene->camera_count, 1);
     const struct scene_camera *camera = &scene->cameras[0];
-    double length = 0.0;
-    for (int i = 0; i < 3; ++i) {
-        forward[i] = camera->target[i] - camera->eye[i];
-        length += forward[i] * forward[i];
-    }
     for (int i = 0; i < 3; ++i)
-        forward[i] /= sqrt(length);
+        forward[i] = camera->target[i] - camera->eye[i];
+    double3_unit(forward);
     return camera;
 }
 
 static double reach(const struct scene_camera *camera, const double forward[3], const float *p,
                     double slope[2])
 {
-    double right[3] = {-forward[2], 0, forward[0]}, up[3], way[3], at[3] = {0, 0, 0};
-    double length = sqrt(right[0] * right[0] + right[2] * right[2]);
-    right[0] /= length, right[2] /= length;
-    for (int i = 0; i < 3; ++i) {
-        int j = (i + 1) % 3, k = (i + 2) % 3;
-        up[i] = right[j] * forward[k] - right[k] * forward[j];
+    double right[3] = {-forward[2], 0, forward[0]}, up[3], way[3];
+    double3_unit(right);
+    double3_cross(right, forward, up);
+    for (int i = 0; i < 3; ++i)
         way[i] = (double)p[i] - camera->eye[i];
-    }
-    for (int i = 0; i < 3; ++i) {
-        at[0] += way[i] * right[i];
-        at[1] += way[i] * up[i];
-        at[2] += way[i] * forward[i];
-    }
-    double tangent = tan(0.5 * (double)camera->fov_y);
-    slope[0] = at[0] / at[2] / (tangent * 4.0 / 3.0);
-    slope[1] = at[1] / at[2] / tangent;
-    return at[2];
+    double tangent = tan(0.5 * (double)camera->fov_y), depth = double3_dot(way, forward);
+    slope[0] = double3_dot(way, right) / depth / (tangent * 4.0 / 3.0);
+    slope[1] = double3_dot(way, up) / depth / tangent;
+    return depth;
 }
 
 /* All vertices lie in a 4:3 picture, and some near its border on both sides. */
@@ -115,8 +103,7 @@ TEST(open_boxes_are_seen_through_their_opening)
         scene_put(scene, walls(half, 1u << sides[k], false), NULL);
         double forward[3];
         const struct scene_camera *camera = camera_of(scene, forward);
-        for (int i = 0; i < 3; ++i)
-            assert_true(fabs(forward[i] - expected[k][i]) < 1e-6);
+        assert_true(double3_distance(forward, expected[k]) < 1e-6);
         assert_true(fabs(camera->eye[0]) + fabs(camera->eye[2]) > 2.0);
         assert_true(scene_noted(scene, "straight on"));
     }
@@ -310,15 +297,9 @@ static double light_total(const struct scene *scene)
     double total = 0.0;
     for (uint32_t i = 0; i < scene->light_count; ++i) {
         const struct scene_light *light = &scene->lights[i];
-        const double *u = light->edge_u, *v = light->edge_v;
-        double area2 = 0.0;
-        for (int k = 0; k < 3; ++k) {
-            int l = (k + 1) % 3, m = (k + 2) % 3;
-            double side = u[l] * v[m] - u[m] * v[l];
-            area2 += side * side;
-        }
-        double share = light->kind == WHIT_LIGHT_RECTANGLE  ? sqrt(area2) / 3.14159265358979
-                       : light->kind == WHIT_LIGHT_TRIANGLE ? sqrt(area2) / 6.28318530717959
+        double area = double3_area(light->edge_u, light->edge_v);
+        double share = light->kind == WHIT_LIGHT_RECTANGLE  ? area / PI
+                       : light->kind == WHIT_LIGHT_TRIANGLE ? area / (2.0 * PI)
                                                             : 1.0;
         total += share * (double)light->color[1];
     }
@@ -336,7 +317,7 @@ TEST(lamps_of_models_light_their_scene)
         assert_true(scene->ambient[0] == 0.1f);
     }
     own_scene *scene = lamp_scene(17.0f, "lamp.json");
-    assert_true(fabs(light_total(scene) - 17.0 / 3.14159265358979) < 1e-4);
+    assert_true(fabs(light_total(scene) - 17.0 / PI) < 1e-4);
     assert_true(scene->ambient[0] == 0.03f);
 }
 
