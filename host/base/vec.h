@@ -144,6 +144,12 @@ static inline double double3_dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+static inline void double3_sub(const double a[3], const double b[3], double out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = a[i] - b[i];
+}
+
 static inline void double3_cross(const double a[3], const double b[3], double out[3])
 {
     out[0] = a[1] * b[2] - a[2] * b[1];
@@ -166,7 +172,8 @@ static inline double double3_area(const double u[3], const double v[3])
 
 static inline double double3_distance(const double a[3], const double b[3])
 {
-    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    double d[3];
+    double3_sub(a, b, d);
     return double3_length(d);
 }
 

@@ -164,8 +164,9 @@ struct surfaces {
 /* The distance from p to the segment from a to b. */
 static double segment_distance(const double a[3], const double b[3], const double p[3])
 {
-    const double ab[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    const double ap[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+    double ab[3], ap[3];
+    double3_sub(b, a, ab);
+    double3_sub(p, a, ap);
     double length2 = double3_dot(ab, ab);
     double t = length2 > 0.0 ? fmin(fmax(double3_dot(ap, ab) / length2, 0.0), 1.0) : 0.0;
     const double at[3] = {a[0] + t * ab[0], a[1] + t * ab[1], a[2] + t * ab[2]};
@@ -178,21 +179,20 @@ static double triangle_distance(const double corners[3][3], const double p[3])
 {
     double e1[3], e2[3], n[3], nearest = INFINITY;
     bool above = true;
-    for (int k = 0; k < 3; ++k) {
-        e1[k] = corners[1][k] - corners[0][k];
-        e2[k] = corners[2][k] - corners[0][k];
-    }
+    double3_sub(corners[1], corners[0], e1);
+    double3_sub(corners[2], corners[0], e2);
     double3_cross(e1, e2, n);
     for (int i = 0; i < 3; ++i) {
         const double *a = corners[i], *b = corners[(i + 1) % 3];
-        const double ab[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-        const double ap[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-        double inwards[3];
+        double ab[3], ap[3], inwards[3];
+        double3_sub(b, a, ab);
+        double3_sub(p, a, ap);
         double3_cross(n, ab, inwards);
         above &= double3_dot(inwards, ap) > 0.0;
         nearest = fmin(nearest, segment_distance(a, b, p));
     }
-    const double ap[3] = {p[0] - corners[0][0], p[1] - corners[0][1], p[2] - corners[0][2]};
+    double ap[3];
+    double3_sub(p, corners[0], ap);
     return above ? fabs(double3_dot(n, ap)) / sqrt(double3_dot(n, n)) : nearest;
 }
 

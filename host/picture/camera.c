@@ -68,8 +68,7 @@ static void scale_to_float(const double v[3], double scale, float out[3])
 static bool make_basis(const struct scene_camera *camera, double forward[3], double right[3],
                        double up[3])
 {
-    for (int i = 0; i < 3; ++i)
-        forward[i] = camera->target[i] - camera->eye[i];
+    double3_sub(camera->target, camera->eye, forward);
     if (!double3_normalize(forward))
         return false;
     double wanted[3] = {camera->up[0], camera->up[1], camera->up[2]};

@@ -24,12 +24,6 @@ static bool usable_vertex(const float *p)
            fabsf(p[2]) <= LARGEST_COORDINATE;
 }
 
-static void edge(const float *from, const float *to, double out[3])
-{
-    for (int i = 0; i < 3; ++i)
-        out[i] = (double)to[i] - (double)from[i];
-}
-
 /* Whether a sum of doubles is 0, computed without rounding: `parts` do not overlap (Shewchuk 1997,
    Grow-Expansion). */
 static bool sum_is_zero(const double *terms, int count)
@@ -182,11 +176,10 @@ static void set_bounds(struct scene_mesh *mesh)
 /* The face's normal; its length is twice the triangle's area. */
 static void face_normal(const struct scene_mesh *mesh, uint32_t triangle, double n[3])
 {
-    const uint32_t *index = mesh->indices + 3 * (size_t)triangle;
-    const float *a = mesh->positions + 3 * (size_t)index[0];
-    double e1[3], e2[3];
-    edge(a, mesh->positions + 3 * (size_t)index[1], e1);
-    edge(a, mesh->positions + 3 * (size_t)index[2], e2);
+    double p[3][3], e1[3], e2[3];
+    scene_mesh_corners(mesh, triangle, p);
+    double3_sub(p[1], p[0], e1);
+    double3_sub(p[2], p[0], e2);
     double3_cross(e1, e2, n);
 }
 

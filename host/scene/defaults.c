@@ -115,12 +115,7 @@ static whit_result add_key_light(struct scene *scene, const struct scene_camera 
         .made_by_whit = true,
     };
     double forward[3], right[3], up[3];
-    for (int i = 0; i < 3; ++i)
-        forward[i] = camera->target[i] - camera->eye[i];
-    double3_unit(forward);
-    double3_cross(forward, camera->up, right);
-    double3_unit(right);
-    double3_cross(right, forward, up);
+    scene_camera_axes(camera, forward, right, up);
     for (int i = 0; i < 3; ++i)
         light.direction[i] = 0.6 * forward[i] + aside * (0.6 * right[i] - 0.9 * up[i]);
     double3_unit(light.direction);

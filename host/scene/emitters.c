@@ -57,10 +57,8 @@ static bool lights_up(const struct scene_material *material)
 static double normal_of(double corners[3][3], double out[3])
 {
     double a[3], b[3];
-    for (int i = 0; i < 3; ++i) {
-        a[i] = corners[1][i] - corners[0][i];
-        b[i] = corners[2][i] - corners[0][i];
-    }
+    double3_sub(corners[1], corners[0], a);
+    double3_sub(corners[2], corners[0], b);
     double3_cross(a, b, out);
     return double3_length(out);
 }
@@ -236,11 +234,9 @@ static void make_flat(const struct scene *scene, const struct emitter *emitter, 
     scene_mesh_placed_corners(&scene->meshes[instance->mesh], emitter->triangle, &local, corners);
     bool mirrored = affine_determinant(&local) < 0.0;
     *out = (struct flat){.emitter = emitter};
-    for (int i = 0; i < 3; ++i) {
-        out->corner[i] = corners[0][i];
-        out->sides[mirrored][i] = corners[1][i] - corners[0][i];
-        out->sides[!mirrored][i] = corners[2][i] - corners[0][i];
-    }
+    memcpy(out->corner, corners[0], sizeof out->corner);
+    double3_sub(corners[1], corners[0], out->sides[mirrored]);
+    double3_sub(corners[2], corners[0], out->sides[!mirrored]);
 }
 
 /* Corner `k`, 0 to 2, of a flat that is a triangle. */
@@ -279,11 +275,9 @@ static bool merge_flats(struct flat *a, const struct flat *b)
             continue;
         for (int i = 0; i < 3; ++i)
             flat_corner(a, (k / 3 + i) % 3, corners[i]);
-        for (int i = 0; i < 3; ++i) {
-            a->corner[i] = corners[0][i];
-            a->sides[0][i] = corners[1][i] - corners[0][i];
-            a->sides[1][i] = corners[2][i] - corners[0][i];
-        }
+        memcpy(a->corner, corners[0], sizeof a->corner);
+        double3_sub(corners[1], corners[0], a->sides[0]);
+        double3_sub(corners[2], corners[0], a->sides[1]);
         a->rectangle = true;
         return true;
     }

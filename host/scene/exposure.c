@@ -2,6 +2,7 @@
    program's camera was set to (a lamp of 1 that should fill a hall, or one of 17 in a box), so
    lights made of them are scaled until what they light best comes out bright, and not burnt out. */
 #include <math.h>
+#include <string.h>
 
 #include "base/color.h"
 #include "base/file.h"
@@ -44,11 +45,9 @@ static double receiver(const struct scene *scene, const struct scene_pose *pose,
         return 0.0;
     double p[3][3];
     scene_mesh_placed_corners(mesh, triangle, &pose->instances[instance], p);
-    for (int i = 0; i < 3; ++i) {
-        corner[i] = p[0][i];
-        edges[0][i] = p[1][i] - p[0][i];
-        edges[1][i] = p[2][i] - p[0][i];
-    }
+    memcpy(corner, p[0], sizeof p[0]);
+    double3_sub(p[1], p[0], edges[0]);
+    double3_sub(p[2], p[0], edges[1]);
     double3_cross(edges[0], edges[1], normal);
     double length = double3_length(normal);
     double3_unit(normal);

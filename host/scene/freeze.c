@@ -358,8 +358,7 @@ static bool usable_camera(const struct scene_camera *camera)
 static void mend_camera(struct scene_camera *camera)
 {
     double view[3], across[3];
-    for (int i = 0; i < 3; ++i)
-        view[i] = camera->target[i] - camera->eye[i];
+    double3_sub(camera->target, camera->eye, view);
     double3_cross(view, camera->up, across);
     double length2 = double3_dot(view, view), up2 = double3_dot(camera->up, camera->up);
     if (!(double3_dot(across, across) > 1e-16 * length2 * up2)) {

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/color.h"
 #include "base/same.h"
 #include "base/vec.h"
@@ -22,6 +23,13 @@ static const double LIT = 0.02;
 static const double OFFSET = 1e-3;
 /* At most this many lights are traced from a point; their visible share stands for all lights. */
 enum { LIGHTS_ASKED = 4 };
+
+/* The scene at time 0; inverses: world to object for each instance. */
+struct posed {
+    const struct scene *scene;
+    struct scene_pose pose;
+    struct affine *inverses;
+};
 
 struct ray {
     double origin[3], dir[3]; /* t counts in lengths of `dir` */
@@ -41,11 +49,9 @@ static bool meet(const struct scene_mesh *mesh, uint32_t triangle, const struct 
 {
     double p[3][3], edges[2][3], from[3], across[3], turned[3];
     scene_mesh_corners(mesh, triangle, p);
-    for (int k = 0; k < 3; ++k) {
-        edges[0][k] = p[1][k] - p[0][k];
-        edges[1][k] = p[2][k] - p[0][k];
-        from[k] = ray->origin[k] - p[0][k];
-    }
+    double3_sub(p[1], p[0], edges[0]);
+    double3_sub(p[2], p[0], edges[1]);
+    double3_sub(ray->origin, p[0], from);
     double3_cross(ray->dir, edges[1], across);
     double3_cross(from, edges[0], turned);
     double scale = double3_dot(edges[0], across);
@@ -121,23 +127,22 @@ static bool meets_box(const struct scene_mesh *mesh, const struct ray *ray)
 }
 
 /* Finds the nearest solid hit; with `any` only says whether there is one, and leaves *hit. */
-static bool trace(const struct scene *scene, const struct scene_pose *pose,
-                  const struct affine *inverses, const struct ray *world, bool any, struct hit *hit)
+static bool trace(const struct posed *posed, const struct ray *world, bool any, struct hit *hit)
 {
     struct ray ray = *world;
     bool found = false;
-    for (uint32_t i = 0; i < pose->instance_count; ++i) {
-        const struct scene_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
-        affine_point(&inverses[i], world->origin, ray.origin);
-        affine_vector(&inverses[i], world->dir, ray.dir);
+    for (uint32_t i = 0; i < posed->pose.instance_count; ++i) {
+        const struct scene_mesh *mesh = &posed->scene->meshes[posed->scene->instances[i].mesh];
+        affine_point(&posed->inverses[i], world->origin, ray.origin);
+        affine_vector(&posed->inverses[i], world->dir, ray.dir);
         if (!meets_box(mesh, &ray))
             continue;
         for (uint32_t k = 0; k < mesh->triangle_count; ++k) {
             struct hit own;
             if (!meet(mesh, k, &ray, &own))
                 continue;
-            own.material = &scene->materials[mesh->materials[k]];
-            if (!is_solid(scene, &own))
+            own.material = &posed->scene->materials[mesh->materials[k]];
+            if (!is_solid(posed->scene, &own))
                 continue;
             found = true;
             if (any)
@@ -146,9 +151,9 @@ static bool trace(const struct scene *scene, const struct scene_pose *pose,
             *hit = own;
             /* Normals go to world space by the inverse transpose. */
             for (int c = 0; c < 3; ++c)
-                hit->normal[c] = inverses[i].m[c] * own.normal[0] +
-                                 inverses[i].m[4 + c] * own.normal[1] +
-                                 inverses[i].m[8 + c] * own.normal[2];
+                hit->normal[c] = posed->inverses[i].m[c] * own.normal[0] +
+                                 posed->inverses[i].m[4 + c] * own.normal[1] +
+                                 posed->inverses[i].m[8 + c] * own.normal[2];
             double3_unit(hit->normal);
         }
     }
@@ -169,8 +174,7 @@ static void place_on(const struct scene_light *light, uint32_t index, double out
                  (scene_light_is_flat(light) ? u * light->edge_u[k] + v * light->edge_v[k] : 0.0);
 }
 
-static bool reaches(const struct scene *scene, const struct scene_pose *pose,
-                    const struct affine *inverses, const struct scene_light *light,
+static bool reaches(const struct posed *posed, const struct scene_light *light,
                     const double point[3], uint32_t index)
 {
     bool parallel = light->kind == WHIT_LIGHT_DIRECTIONAL;
@@ -182,20 +186,18 @@ static bool reaches(const struct scene *scene, const struct scene_pose *pose,
         ray.origin[k] = point[k];
         ray.dir[k] = parallel ? -light->direction[k] : at[k] - point[k];
     }
-    return !trace(scene, pose, inverses, &ray, true, &hit);
+    return !trace(posed, &ray, true, &hit);
 }
 
 /* Brightness is taken at the point that was hit, and not at `point`, which lies off the surface: an
    emissive surface that was hit must not light itself. */
-static bool is_lit(const struct scene *scene, const struct scene_pose *pose,
-                   const struct affine *inverses, const double point[3], const struct hit *hit,
+static bool is_lit(const struct posed *posed, const double point[3], const struct hit *hit,
                    uint32_t index)
 {
     double sum = 0.0;
-    for (uint32_t i = 0; i < pose->light_count && sum < LIT; ++i) {
-        double brightness = freeze_brightness(&pose->lights[i], hit->at, hit->normal);
-        if (brightness > 0.1 * LIT &&
-            reaches(scene, pose, inverses, &pose->lights[i], point, index))
+    for (uint32_t i = 0; i < posed->pose.light_count && sum < LIT; ++i) {
+        double brightness = freeze_brightness(&posed->pose.lights[i], hit->at, hit->normal);
+        if (brightness > 0.1 * LIT && reaches(posed, &posed->pose.lights[i], point, index))
             sum += brightness;
     }
     return sum >= LIT;
@@ -209,12 +211,7 @@ static struct ray look(const struct scene_camera *camera, uint32_t index, uint32
     double forward[3], right[3], up[3], tall;
     bool parallel = camera->kind == WHIT_CAMERA_ORTHOGRAPHIC;
     struct ray ray = {.t_max = INFINITY};
-    for (int k = 0; k < 3; ++k)
-        forward[k] = camera->target[k] - camera->eye[k];
-    double3_unit(forward);
-    double3_cross(forward, camera->up, right);
-    double3_unit(right);
-    double3_cross(right, forward, up);
+    scene_camera_axes(camera, forward, right, up);
     tall = parallel ? 0.5 * (double)camera->height : same_tan(0.5 * (double)camera->fov_y);
     for (int k = 0; k < 3; ++k) {
         double aside = tall * (4.0 / 3.0 * x * right[k] + y * up[k]);
@@ -234,12 +231,11 @@ static uint32_t ray_count(const struct scene *scene)
 
 /* Traces camera ray `index`: its hit, and the `point` a little before it. False: it hits
    nothing. */
-static bool see(const struct scene *scene, const struct scene_pose *pose,
-                const struct affine *inverses, uint32_t index, uint32_t count, struct hit *hit,
+static bool see(const struct posed *posed, uint32_t index, uint32_t count, struct hit *hit,
                 double point[3])
 {
-    struct ray ray = look(&pose->cameras[0], index, count);
-    if (!trace(scene, pose, inverses, &ray, false, hit))
+    struct ray ray = look(&posed->pose.cameras[0], index, count);
+    if (!trace(posed, &ray, false, hit))
         return false;
     for (int k = 0; k < 3; ++k) {
         hit->at[k] = ray.origin[k] + hit->t * ray.dir[k];
@@ -270,17 +266,16 @@ static bool glows(const struct scene *scene, const struct hit *hit)
     return own > 0.0 && own >= shine(scene, hit, hit->material->diffuse, SCENE_SLOT_DIFFUSE);
 }
 
-static double measure_share(const struct scene *scene, const struct scene_pose *pose,
-                            const struct affine *inverses)
+static double measure_share(const struct posed *posed)
 {
-    uint32_t count = ray_count(scene), seen = 0, lit = 0;
+    uint32_t count = ray_count(posed->scene), seen = 0, lit = 0;
     for (uint32_t i = 0; i < count; ++i) {
         struct hit hit;
         double point[3];
-        if (!see(scene, pose, inverses, i, count, &hit, point) || glows(scene, &hit))
+        if (!see(posed, i, count, &hit, point) || glows(posed->scene, &hit))
             continue;
         ++seen;
-        lit += is_lit(scene, pose, inverses, point, &hit, i);
+        lit += is_lit(posed, point, &hit, i);
     }
     return seen ? (double)lit / seen : 1.0;
 }
@@ -298,40 +293,38 @@ static bool is_mirror(const struct scene *scene, const struct hit *hit)
 /* Brightness of a white surface at `point`. With `shadows` every step-th light, starting with
    another one at each point, is tested for visibility, and the sum is scaled by the visible
    share. */
-static double light_at(const struct scene *scene, const struct scene_pose *pose,
-                       const struct affine *inverses, const double point[3], const struct hit *hit,
+static double light_at(const struct posed *posed, const double point[3], const struct hit *hit,
                        uint32_t index, bool shadows)
 {
-    uint32_t step = (pose->light_count + LIGHTS_ASKED - 1) / LIGHTS_ASKED;
+    uint32_t step = (posed->pose.light_count + LIGHTS_ASKED - 1) / LIGHTS_ASKED;
     double sum = 0.0, asked = 0.0, reached = 0.0;
-    for (uint32_t i = 0; i < pose->light_count; ++i) {
-        double brightness = freeze_brightness(&pose->lights[i], hit->at, hit->normal);
+    for (uint32_t i = 0; i < posed->pose.light_count; ++i) {
+        double brightness = freeze_brightness(&posed->pose.lights[i], hit->at, hit->normal);
         sum += brightness;
         if (!shadows || !(brightness > 0.0) || (i + index) % step != 0)
             continue;
         asked += brightness;
-        if (reaches(scene, pose, inverses, &pose->lights[i], point, index))
+        if (reaches(posed, &posed->pose.lights[i], point, index))
             reached += brightness;
     }
     return asked > 0.0 ? sum * (reached / asked) : sum;
 }
 
-static void measure_seen(const struct scene *scene, const struct scene_pose *pose,
-                         const struct affine *inverses, bool shadows, struct freeze_seen *seen)
+static void measure_seen(const struct posed *posed, bool shadows, struct freeze_seen *seen)
 {
-    uint32_t count = ray_count(scene);
-    double ambient =
-        fmax(fmax((double)scene->ambient[0], (double)scene->ambient[1]), (double)scene->ambient[2]);
+    uint32_t count = ray_count(posed->scene);
+    double ambient = fmax(fmax((double)posed->scene->ambient[0], (double)posed->scene->ambient[1]),
+                          (double)posed->scene->ambient[2]);
     for (uint32_t i = 0; i < count; ++i) {
         struct hit hit;
         double point[3];
-        if (!see(scene, pose, inverses, i, count, &hit, point) || is_mirror(scene, &hit))
+        if (!see(posed, i, count, &hit, point) || is_mirror(posed->scene, &hit))
             continue;
-        double own = shine(scene, &hit, hit.material->emission, SCENE_SLOT_EMISSION);
+        double own = shine(posed->scene, &hit, hit.material->emission, SCENE_SLOT_EMISSION);
         double light = hit.material->model == WHIT_MODEL_UNLIT
                            ? 1.0
-                           : light_at(scene, pose, inverses, point, &hit, i, shadows) + ambient;
-        double color = shine(scene, &hit, hit.material->diffuse, SCENE_SLOT_DIFFUSE);
+                           : light_at(posed, point, &hit, i, shadows) + ambient;
+        double color = shine(posed->scene, &hit, hit.material->diffuse, SCENE_SLOT_DIFFUSE);
         seen->shown[seen->count] = own + light * color;
         seen->white[seen->count++] = own + light;
     }
@@ -339,56 +332,49 @@ static void measure_seen(const struct scene *scene, const struct scene_pose *pos
 
 /* ---- The first camera ---- */
 
-/* Poses the scene at time 0. *inverses: world to object for each instance, to free(); NULL where
-   light cannot be measured: no camera, a panorama, or a matrix without an inverse. */
-static whit_result begin(const struct scene *scene, struct scene_pose *pose,
-                         struct affine **inverses)
+/* Poses the scene at time 0. *usable: light can be measured; false: no camera, a panorama, or a
+   matrix without an inverse. Release with finish(), also where it failed. */
+static whit_result begin(const struct scene *scene, struct posed *posed, bool *usable)
 {
-    whit_result result = scene_pose_init(scene, 0.0, pose);
-    *inverses = NULL;
+    *posed = (struct posed){.scene = scene};
+    *usable = false;
+    whit_result result = scene_pose_init(scene, 0.0, &posed->pose);
     if (result != WHIT_OK)
         return result;
-    *inverses = calloc(pose->instance_count + 1, sizeof **inverses);
-    if (!*inverses) {
-        scene_pose_finish(pose);
+    const struct scene_pose *pose = &posed->pose;
+    posed->inverses = array_alloc(pose->instance_count, sizeof *posed->inverses);
+    if (!posed->inverses)
         return WHIT_ERROR_MEMORY;
-    }
-    bool all = pose->camera_count && pose->cameras[0].kind != WHIT_CAMERA_PANORAMA;
-    for (uint32_t i = 0; all && i < pose->instance_count; ++i)
-        all = affine_invert(&pose->instances[i], &(*inverses)[i]);
-    if (!all) {
-        free(*inverses);
-        *inverses = NULL;
-    }
+    *usable = pose->camera_count && pose->cameras[0].kind != WHIT_CAMERA_PANORAMA;
+    for (uint32_t i = 0; *usable && i < pose->instance_count; ++i)
+        *usable = affine_invert(&pose->instances[i], &posed->inverses[i]);
     return WHIT_OK;
+}
+
+static void finish(struct posed *posed)
+{
+    free(posed->inverses);
+    scene_pose_finish(&posed->pose);
 }
 
 whit_result freeze_lit_share(const struct scene *scene, double *share)
 {
-    struct scene_pose pose;
-    struct affine *inverses;
-    *share = 1.0;
-    whit_result result = begin(scene, &pose, &inverses);
-    if (result != WHIT_OK)
-        return result;
-    if (inverses)
-        *share = measure_share(scene, &pose, inverses);
-    free(inverses);
-    scene_pose_finish(&pose);
-    return WHIT_OK;
+    struct posed posed;
+    bool usable;
+    whit_result result = begin(scene, &posed, &usable);
+    *share = usable ? measure_share(&posed) : 1.0;
+    finish(&posed);
+    return result;
 }
 
 whit_result freeze_see(const struct scene *scene, bool shadows, struct freeze_seen *seen)
 {
-    struct scene_pose pose;
-    struct affine *inverses;
+    struct posed posed;
+    bool usable;
+    whit_result result = begin(scene, &posed, &usable);
     seen->count = 0;
-    whit_result result = begin(scene, &pose, &inverses);
-    if (result != WHIT_OK)
-        return result;
-    if (inverses)
-        measure_seen(scene, &pose, inverses, shadows, seen);
-    free(inverses);
-    scene_pose_finish(&pose);
-    return WHIT_OK;
+    if (usable)
+        measure_seen(&posed, shadows, seen);
+    finish(&posed);
+    return result;
 }

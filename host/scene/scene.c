@@ -9,6 +9,7 @@
 #include "base/array.h"
 #include "base/child.h"
 #include "base/same.h"
+#include "base/vec.h"
 
 struct scene *scene_create(const whit_log *log, const char *name)
 {
@@ -224,6 +225,16 @@ double scene_light_cone_width(const struct scene_light *light)
 {
     double outer = (double)light->versine_outer, width = outer - (double)light->versine_inner;
     return fmax(width, fmax(outer * 1e-6, 1e-30));
+}
+
+void scene_camera_axes(const struct scene_camera *camera, double forward[3], double right[3],
+                       double up[3])
+{
+    double3_sub(camera->target, camera->eye, forward);
+    double3_unit(forward);
+    double3_cross(forward, camera->up, right);
+    double3_unit(right);
+    double3_cross(right, forward, up);
 }
 
 void scene_node_init(struct scene_node *out, const char *name, uint32_t parent)

@@ -350,6 +350,10 @@ double scene_light_fade(const struct scene_light *light, double distance);
    equal. */
 double scene_light_cone_width(const struct scene_light *light);
 
+/* Unit vectors of a camera whose `up` is not along its view. */
+void scene_camera_axes(const struct scene_camera *camera, double forward[3], double right[3],
+                       double up[3]);
+
 void scene_mesh_finish(struct scene_mesh *mesh);
 /* Makes *out a deep copy; false, with *out empty, where memory ran out. */
 bool scene_mesh_copy(const struct scene_mesh *mesh, struct scene_mesh *out);

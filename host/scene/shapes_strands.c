@@ -27,10 +27,8 @@ static void random_direction(uint32_t *state, double out[3])
 static void add_face(struct shaper *shaper, const double *a, const double *b, const double *c)
 {
     double ab[3], ac[3], normal[3];
-    for (int i = 0; i < 3; ++i) {
-        ab[i] = b[i] - a[i];
-        ac[i] = c[i] - a[i];
-    }
+    double3_sub(b, a, ab);
+    double3_sub(c, a, ac);
     double3_cross(ab, ac, normal);
     uint32_t first = shaper_vertex(shaper, a, normal, 0.0, 0.0);
     shaper_vertex(shaper, b, normal, 1.0, 0.0);
