@@ -102,11 +102,9 @@ bool affine_invert(const struct affine *a, struct affine *out)
 
 void affine_point(const struct affine *a, const double in[3], double out[3])
 {
-    double p[3];
+    affine_vector(a, in, out);
     for (int r = 0; r < 3; ++r)
-        p[r] = a->m[4 * r] * in[0] + a->m[4 * r + 1] * in[1] + a->m[4 * r + 2] * in[2] +
-               a->m[4 * r + 3];
-    out[0] = p[0], out[1] = p[1], out[2] = p[2];
+        out[r] += a->m[4 * r + 3];
 }
 
 void affine_vector(const struct affine *a, const double in[3], double out[3])

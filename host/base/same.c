@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* A number as the sum of two doubles, the second being a rounding error of the first (Dekker 1971,
@@ -147,26 +148,23 @@ struct turn {
    below 2^-62 of the sum. */
 static struct turn turn_of(struct pair r)
 {
+    static const struct {
+        double sine, cosine;
+    } terms[] = {{-1.0 / 6.0, 1.0 / 24.0},
+                 {1.0 / 120.0, -1.0 / 720.0},
+                 {-1.0 / 5040.0, 1.0 / 40320.0},
+                 {1.0 / 362880.0, -1.0 / 3628800.0},
+                 {-1.0 / 39916800.0, 1.0 / 479001600.0},
+                 {1.0 / 6227020800.0, -1.0 / 87178291200.0},
+                 {-1.0 / 1307674368000.0, 1.0 / 20922789888000.0},
+                 {1.0 / 355687428096000.0, -1.0 / 6402373705728000.0},
+                 {-1.0 / 121645100408832000.0, 1.0 / 2432902008176640000.0}};
     struct pair square = product(r.hi, r.hi);
-    double z = square.hi;
-    double s =
-        -1.0 / 6.0 +
-        z * (1.0 / 120.0 +
-             z * (-1.0 / 5040.0 + z * (1.0 / 362880.0 +
-                                       z * (-1.0 / 39916800.0 +
-                                            z * (1.0 / 6227020800.0 +
-                                                 z * (-1.0 / 1307674368000.0 +
-                                                      z * (1.0 / 355687428096000.0 +
-                                                           z * (-1.0 / 121645100408832000.0))))))));
-    double c =
-        1.0 / 24.0 +
-        z * (-1.0 / 720.0 +
-             z * (1.0 / 40320.0 + z * (-1.0 / 3628800.0 +
-                                       z * (1.0 / 479001600.0 +
-                                            z * (-1.0 / 87178291200.0 +
-                                                 z * (1.0 / 20922789888000.0 +
-                                                      z * (-1.0 / 6402373705728000.0 +
-                                                           z * (1.0 / 2432902008176640000.0))))))));
+    double z = square.hi, s = 0.0, c = 0.0;
+    for (size_t i = sizeof terms / sizeof *terms; i-- > 0;) {
+        s = terms[i].sine + z * s;
+        c = terms[i].cosine + z * c;
+    }
     struct pair sine = sum(r.hi, r.hi * z * s + r.lo * (1.0 - 0.5 * z));
     struct pair cosine = sum(1.0, -0.5 * z);
     double low = cosine.lo + (z * z * c - 0.5 * square.lo - r.hi * r.lo);

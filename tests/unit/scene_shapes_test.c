@@ -236,7 +236,7 @@ TEST(sphereflake)
     }
     /* Touching at most: no two spheres reach into each other. */
     for (uint32_t i = 0; i < count; ++i) {
-        for (uint32_t k = i + 1; k < 10; ++k) {
+        for (uint32_t k = i + 1; k < count; ++k) {
             const double *a = spheres + 4 * (size_t)i, *b = spheres + 4 * (size_t)k;
             assert_true(double3_distance(a, b) > a[3] + b[3] - 1e-12);
         }
