@@ -17,8 +17,6 @@ enum {
     OP_NOP = 0,
     OP_UNDEF = 1,
     OP_SOURCE_CONTINUED = 2,
-    OP_SOURCE = 3,
-    OP_SOURCE_EXTENSION = 4,
     OP_NAME = 5,
     OP_MEMBER_NAME = 6,
     OP_STRING = 7,
@@ -148,11 +146,8 @@ enum {
 enum { CAPABILITY_INT64 = 11 };
 enum {
     STORAGE_INPUT = 1,
-    STORAGE_UNIFORM = 2,
-    STORAGE_WORKGROUP = 4,
     STORAGE_PRIVATE = 6,
     STORAGE_FUNCTION = 7,
-    STORAGE_BUFFER = 12,
 };
 enum {
     DECORATION_SPEC_ID = 1,

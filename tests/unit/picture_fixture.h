@@ -92,6 +92,15 @@ static inline void use_texture(struct scene_material *m, enum scene_slot slot, u
     use->wrap_u = use->wrap_v = SCENE_WRAP_CLAMP;
 }
 
+/* Uses a texture with filtered texels; `transform`: of its coordinates. */
+static inline void use_filtered(struct scene_material *m, enum scene_slot slot, uint32_t texture,
+                                const float transform[6], enum scene_wrap wrap)
+{
+    struct scene_texture_use *use = &m->textures[slot];
+    *use = (struct scene_texture_use){.texture = texture, .wrap_u = wrap, .wrap_v = wrap};
+    memcpy(use->transform, transform, sizeof use->transform);
+}
+
 /* ---- Pixels ---- */
 
 static const whit_renderer_params picture_params = {.width = 33, .height = 33, .depth = 8};

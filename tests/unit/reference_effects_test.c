@@ -20,12 +20,7 @@ static uint32_t add_noise(struct scene *scene, uint8_t lowest, bool alpha)
 static void use_smooth(struct scene_material *m, enum scene_slot slot, uint32_t texture,
                        float scale, enum scene_wrap wrap)
 {
-    use_texture(m, slot, texture);
-    struct scene_texture_use *use = &m->textures[slot];
-    const float transform[6] = {scale, 0.3f, 0.1f, -0.2f, scale, 0.2f};
-    memcpy(use->transform, transform, sizeof transform);
-    use->nearest = false;
-    use->wrap_u = use->wrap_v = wrap;
+    use_filtered(m, slot, texture, (float[]){scale, 0.3f, 0.1f, -0.2f, scale, 0.2f}, wrap);
 }
 
 static struct scene_mesh ball(double radius)
@@ -266,10 +261,8 @@ static struct scene *far_coordinates(void)
     struct scene *scene = dark_scene((double[]){0, 8, 0}, (double[]){0, 0, 0});
     struct scene_material m = unlit(1, 1, 1);
     struct scene_mesh plane = mesh_plane(4);
-    use_texture(&m, SCENE_SLOT_DIFFUSE, add_noise(scene, 0, false));
-    struct scene_texture_use *use = &m.textures[SCENE_SLOT_DIFFUSE];
-    use->nearest = false;
-    use->wrap_u = use->wrap_v = SCENE_WRAP_MIRROR;
+    use_filtered(&m, SCENE_SLOT_DIFFUSE, add_noise(scene, 0, false), (float[]){1, 0, 0, 0, 1, 0},
+                 SCENE_WRAP_MIRROR);
     for (uint32_t i = 0; i < 2 * plane.vertex_count; ++i)
         plane.uvs[0][i] += i % 2 ? 65537.0f : -65537.0f;
     add_object(scene, plane, m, 0, 0, 0);

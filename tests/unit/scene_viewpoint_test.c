@@ -13,6 +13,15 @@ static struct scene *empty_scene(void)
     return scene;
 }
 
+/* Freezes a model that is seen from `eye`. */
+static struct scene *seen_from(struct scene *scene, const double eye[3], const double target[3],
+                               double fov_y)
+{
+    scene_put_camera(scene, eye, target, fov_y);
+    scene->is_model = true;
+    return scene_ready(scene);
+}
+
 /* The walls of a box of half size `half` around the origin, seen from inside, but for those in
    `open`: bit 2 * axis + (1: the high side). `turned`: seen from outside. */
 static struct scene_mesh walls(const float half[3], unsigned open, bool turned)
@@ -64,6 +73,15 @@ static double reach(const struct scene_camera *camera, const double forward[3], 
     slope[0] = double3_dot(way, right) / depth / (tangent * 4.0 / 3.0);
     slope[1] = double3_dot(way, up) / depth / tangent;
     return depth;
+}
+
+/* Asserts that a point lies in the picture, at most at this share of its half height. */
+static void assert_shown(const struct scene_camera *camera, const double forward[3], const float *p,
+                         double most)
+{
+    double slope[2];
+    assert_true(reach(camera, forward, p, slope) > 0.0);
+    assert_true(fabs(slope[1]) < most);
 }
 
 /* All vertices lie in a 4:3 picture, and some near its border on both sides. */
@@ -218,11 +236,10 @@ TEST(long_triangles_of_a_part_are_in_the_picture)
     assert_int_equal(shape_cylinder(0.5, 0.0, 2.0, 64, &cone), WHIT_OK);
     scene_put(scene, mesh_plane(20), NULL);
     scene_put(scene, cone, &(struct put){.at = {0, 1, 0}});
-    double forward[3], slope[2];
+    double forward[3];
     const struct scene_camera *camera = camera_of(scene, forward);
     assert_true(scene_noted(scene, "shows the small part of it that nearly all triangles are in"));
-    assert_true(reach(camera, forward, (const float[]){0, 2, 0}, slope) > 0.0);
-    assert_true(fabs(slope[1]) < 1.0);
+    assert_shown(camera, forward, (const float[]){0, 2, 0}, 1.0);
 }
 
 /* The picture has room for an object that flies away later. */
@@ -233,12 +250,10 @@ TEST(animations_stay_in_the_picture)
     scene_put(scene, walls((const float[]){1, 1, 1}, 0, true), &(struct put){.node = &flies});
     scene_put_channel(scene, flies, SCENE_PATH_TRANSLATION, 2, (float[]){0, 2},
                       (float[]){0, 0, 0, 0, 20, 0});
-    double forward[3], slope[2];
+    double forward[3];
     const struct scene_camera *camera = camera_of(scene, forward);
-    assert_true(reach(camera, forward, (const float[]){1, 21, 1}, slope) > 0.0);
-    assert_true(fabs(slope[1]) < 0.95);
-    assert_true(reach(camera, forward, (const float[]){1, -1, 1}, slope) > 0.0);
-    assert_true(fabs(slope[1]) < 0.95);
+    assert_shown(camera, forward, (const float[]){1, 21, 1}, 0.95);
+    assert_shown(camera, forward, (const float[]){1, -1, 1}, 0.95);
 }
 
 /* ... also where it is far away only at one key, between even steps, or before the time 0. */
@@ -251,10 +266,9 @@ TEST(animations_stay_in_the_picture_at_keys)
         scene_put(scene, walls((const float[]){1, 1, 1}, 0, true), &(struct put){.node = &flies});
         scene_put_channel(scene, flies, SCENE_PATH_TRANSLATION, 4, times[i],
                           (float[]){0, 0, 0, 0, 20, 0, 0, 0, 0, 0, 0, 0});
-        double forward[3], slope[2];
+        double forward[3];
         const struct scene_camera *camera = camera_of(scene, forward);
-        assert_true(reach(camera, forward, (const float[]){1, 21, 1}, slope) > 0.0);
-        assert_true(fabs(slope[1]) < 0.95);
+        assert_shown(camera, forward, (const float[]){1, 21, 1}, 0.95);
         assert_true((double)scene->time_end_s == (double)times[i][3]);
     }
 }
@@ -412,9 +426,8 @@ TEST(metal_is_not_taken_for_its_colour)
             scene_put_texture(scene, 1, 1, texels[plastic]);
         scene_put(scene, mesh_plane(4.0), &(struct put){.material = &m});
         scene_put_sun(scene, 0, -1, 0, 1.9f);
-        scene_put_camera(scene, (const double[]){0, 3, 3}, (const double[]){0, 0, 0}, 0.5);
-        scene->is_model = true;
-        assert_true((scene_ready(scene)->exposure_ev < 0.0) == plastic);
+        seen_from(scene, (const double[]){0, 3, 3}, (const double[]){0, 0, 0}, 0.5);
+        assert_true((scene->exposure_ev < 0.0) == plastic);
     }
 }
 
@@ -430,9 +443,7 @@ TEST(light_that_does_not_arrive_burns_nothing_out)
                                 .color = {1.9f, 1.9f, 1.9f}};
     light.origin.file = string_copy("a.glb");
     scene_put_light(scene, light);
-    scene_put_camera(scene, (const double[]){0, 3, 3}, (const double[]){0, 0, 0}, 0.5);
-    scene->is_model = true;
-    scene_ready(scene);
+    seen_from(scene, (const double[]){0, 3, 3}, (const double[]){0, 0, 0}, 0.5);
     assert_true(scene->exposure_ev == 0.0);
 }
 
@@ -488,9 +499,7 @@ static struct scene *block_that_emits(float emission)
     for (int i = 0; i < 3; ++i)
         glow.emission[i] = emission * glow.diffuse[i];
     scene_put(scene, mesh_box(2, 2, 2), &(struct put){.material = &glow});
-    scene_put_camera(scene, (const double[]){0, 0, 60}, (const double[]){0, 0, 0}, 0.5);
-    scene->is_model = true;
-    return scene_ready(scene);
+    return seen_from(scene, (const double[]){0, 0, 60}, (const double[]){0, 0, 0}, 0.5);
 }
 
 /* From so far away, points a little before the block would be lit by its own front. */
@@ -513,9 +522,7 @@ static struct scene *wall_with_spot(double radius)
                                                 .color = {1, 1, 1},
                                                 .versine_inner = edge,
                                                 .versine_outer = edge});
-    scene_put_camera(scene, (const double[]){0, 0, 10.05}, (const double[]){0, 0, 0}, 0.5);
-    scene->is_model = true;
-    return scene_ready(scene);
+    return seen_from(scene, (const double[]){0, 0, 10.05}, (const double[]){0, 0, 0}, 0.5);
 }
 
 TEST(lamps_that_light_less_than_half_get_help)
@@ -534,9 +541,7 @@ static struct scene *box_under_sun(unsigned open, bool glass)
     if (glass)
         scene_put(scene, mesh_plane(4), &(struct put){.material = &pane, .at = {0, 2, 0}});
     scene_put_sun(scene, 0.1, -1, 0.2, 1.0f);
-    scene_put_camera(scene, (const double[]){0, 0, 1.9}, (const double[]){0, -1.4, 0}, 0.9);
-    scene->is_model = true;
-    return scene_ready(scene);
+    return seen_from(scene, (const double[]){0, 0, 1.9}, (const double[]){0, -1.4, 0}, 0.9);
 }
 
 TEST(boxes_that_shut_the_sun_out_get_a_lamp)
@@ -552,7 +557,6 @@ TEST(boxes_that_shut_the_sun_out_get_a_lamp)
      */
     scene = empty_scene();
     scene_put(scene, walls((const float[]){2, 3.5f, 2}, 8, false), NULL);
-    scene_put_camera(scene, (const double[]){0, 0, 1.9}, (const double[]){0, -0.5, 0}, 1.2);
-    scene->is_model = true;
-    assert_added(scene_ready(scene), 1, 0);
+    seen_from(scene, (const double[]){0, 0, 1.9}, (const double[]){0, -0.5, 0}, 1.2);
+    assert_added(scene, 1, 0);
 }
