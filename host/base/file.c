@@ -262,6 +262,24 @@ static int open_direct(const char *path)
     return open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
 }
 
+/* The file that `path` leads to, also where it is a link to one that is not there yet: a symbolic
+   link stays, what it points to is written. NULL, with errno. */
+static char *target_of(const char *path)
+{
+    char to[PATH_MAX];
+    char *target = realpath(path, NULL);
+    if (target || errno != ENOENT)
+        return target;
+    ssize_t length = readlink(path, to, sizeof to - 1);
+    if (length < 0)
+        return string_copy(path);
+    to[length] = 0;
+    char *next = path_beside(path, to);
+    target = next ? target_of(next) : NULL;
+    free(next);
+    return target;
+}
+
 static int open_for_writing(struct file_write *file, const char *path)
 {
     struct stat info;
@@ -277,8 +295,7 @@ static int open_for_writing(struct file_write *file, const char *path)
     }
     if (exists && access(path, W_OK) != 0)
         return -1;
-    /* A symbolic link stays; the file that it points to is replaced. */
-    file->path = exists ? realpath(path, NULL) : string_copy(path);
+    file->path = target_of(path);
     if (!file->path)
         return -1;
     pthread_mutex_lock(&begin_lock);

@@ -121,6 +121,11 @@ TEST_IN(links_pipes_and_long_names, folder_begin, folder_end)
     struct stat info;
     assert_int_equal(lstat(link_path, &info), 0);
     assert_true(S_ISLNK(info.st_mode));
+    assert_int_equal(unlink(path), 0);
+    put(link_path, "again"); /* its target is not there */
+    assert_content(path, "again");
+    assert_int_equal(lstat(link_path, &info), 0);
+    assert_true(S_ISLNK(info.st_mode));
 
     assert_int_equal(mkfifo(pipe_path, 0600), 0);
     int fd = open(pipe_path, O_RDONLY | O_NONBLOCK);
