@@ -15,7 +15,6 @@
 #include "load/obj.h"
 #include "load/picture.h"
 #include "load/ply.h"
-#include "load/ply_elements.h"
 
 /* A model larger than this is refused before it is read. */
 #define MODEL_LIMIT (UINT64_C(4) << 30)
@@ -264,17 +263,6 @@ static whit_result prepare_obj(struct scene *scene, const char *path, struct mod
     return marked ? result : WHIT_ERROR_MEMORY;
 }
 
-static whit_result prepare_ply(struct scene *scene, const char *path, struct model_file *file)
-{
-    whit_result result = ply_check(&scene->log, path, file->data, file->size_bytes);
-    if (result == WHIT_OK)
-        result = ply_replace_strips(&scene->log, path, &file->data, &file->size_bytes);
-    if (result == WHIT_OK)
-        result = ply_check_elements(scene, path, &file->data, &file->size_bytes, &file->paint);
-    bool repaired = result != WHIT_OK || ply_repair(&file->data, &file->size_bytes);
-    return repaired ? result : WHIT_ERROR_MEMORY;
-}
-
 /* Checks and repairs the bytes of a file before assimp gets them, and reads the materials that an
    OBJ names. */
 static whit_result prepare(struct scene *scene, const char *path, struct model_file *file)
@@ -282,7 +270,7 @@ static whit_result prepare(struct scene *scene, const char *path, struct model_f
     if (file->kind == IMPORT_OBJ)
         return prepare_obj(scene, path, file);
     if (file->kind == IMPORT_PLY)
-        return prepare_ply(scene, path, file);
+        return ply_prepare(scene, path, &file->data, &file->size_bytes, &file->paint);
     if (file->kind == IMPORT_STL)
         return cut_check_stl(scene, path, file->data, &file->size_bytes);
     return file->kind == IMPORT_OFF ? cut_check_off(scene, path, &file->data, &file->size_bytes)

@@ -1,5 +1,5 @@
 whit_module(load
-  SOURCES load.c format.c up.c model.c model_mesh.c obj.c cut.c ply.c ply_elements.c mtl.c mtl_material.c importer.c
+  SOURCES load.c format.c up.c model.c model_mesh.c obj.c cut.c ply.c mtl.c mtl_material.c importer.c
     importer_assimp.c importer_glb.c unread.c threemf.c part.c gltf.c gltf_json.c gltf_buffer.c
     gltf_accessor.c gltf_texture.c gltf_material.c gltf_geometry.c gltf_draco.c gltf_nodes.c
     gltf_animation.c gltf_skin.c

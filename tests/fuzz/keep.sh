@@ -18,7 +18,7 @@ sources() {
     obj) echo host/load/obj.c host/load/model.c host/load/model_mesh.c ;;
     mtl) echo host/load/mtl.c host/load/mtl_material.c ;;
     gltf) echo host/load/gltf*.c ;;
-    ply) echo host/load/ply.c host/load/ply_elements.c host/load/importer.c ;;
+    ply) echo host/load/ply.c host/load/importer.c ;;
     scene) echo host/load/scene_*.c ;;
     image) echo host/image/png.c host/image/exr.c host/image/pfm.c host/image/hdr.c ;;
     texture) echo host/load/picture.c host/load/jpeg.c ;;
