@@ -110,6 +110,8 @@ static int answer_question(void *user, void *to, child_write write)
     const struct question *question = user;
     struct foreign_answer answer = {0};
     answer.result = (uint32_t)question->fn(question->user, to, write, &answer);
+    if (answer.result == WHIT_ERROR_MEMORY && !answer.reason[0])
+        return CHILD_EXIT_MEMORY;
     return write(to, &answer, sizeof answer) ? 0 : 1;
 }
 

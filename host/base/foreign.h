@@ -36,7 +36,7 @@ struct foreign_answer {
 };
 
 /* The function that foreign_ask runs in a child: it writes data, and fills in the answer's numbers
-   or its reason. */
+   or its reason. WHIT_ERROR_MEMORY without a reason means the limit on memory. */
 typedef whit_result (*foreign_fn)(void *user, void *to, child_write write,
                                   struct foreign_answer *answer);
 

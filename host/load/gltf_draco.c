@@ -11,11 +11,11 @@
 /* assimp 5.2 loses decoded indices of 32 bits, so it is asked for 16 bits. */
 enum { ASSIMP_VERTICES_MAX = 65536 };
 
-bool gltf_is_packed(const struct gltf_primitive *primitive, enum import_array array)
+bool gltf_is_packed(const struct gltf_primitive *primitive, enum part_array array)
 {
     const json_t *packed = json_object_get(primitive->draco, "attributes");
-    return array == IMPORT_INDICES ? primitive->draco != NULL
-                                   : json_object_get(packed, gltf_attributes[array].name) != NULL;
+    return array == PART_INDICES ? primitive->draco != NULL
+                                 : json_object_get(packed, gltf_attributes[array].name) != NULL;
 }
 
 /* JSON of the glTF that assimp is given, while it is built. */
@@ -34,10 +34,10 @@ static bool add_accessor(struct small *small, const struct gltf_accessor *access
 
 /* Whether assimp 5.2 can decode the array: colours may be integers, all others must be floats. */
 static bool check_component(const struct gltf *gltf, const struct gltf_primitive *primitive,
-                            enum import_array array)
+                            enum part_array array)
 {
     uint32_t component = primitive->accessors[array].component;
-    bool color = array == IMPORT_COLORS && (component == 5121 || component == 5123);
+    bool color = array == PART_COLORS && (component == 5121 || component == 5123);
     return component == GLTF_FLOAT || color ||
            gltf_fail(gltf, &primitive->at, "its %s is packed by Draco and is not of floats",
                      gltf_attributes[array].name);
@@ -46,24 +46,24 @@ static bool check_component(const struct gltf *gltf, const struct gltf_primitive
 static bool add_attributes(const struct gltf *gltf, const struct gltf_primitive *primitive,
                            struct small *small)
 {
-    const struct gltf_accessor *indices = &primitive->accessors[IMPORT_INDICES];
+    const struct gltf_accessor *indices = &primitive->accessors[PART_INDICES];
     struct gltf_place at = gltf_place("%.60s.draco", primitive->at.text);
     json_t *ids;
     bool made = true;
     if (!gltf_object(gltf, primitive->draco, &at, "attributes", &ids))
         return false;
-    if (!gltf_is_packed(primitive, IMPORT_POSITIONS))
+    if (!gltf_is_packed(primitive, PART_POSITIONS))
         return gltf_fail(gltf, &at, "there is no POSITION");
     if (indices->count && primitive->vertex_count > ASSIMP_VERTICES_MAX)
         return gltf_fail(gltf, &at, "of %u vertices: at most %u can be unpacked",
                          primitive->vertex_count, ASSIMP_VERTICES_MAX);
-    for (int i = 0; i < IMPORT_INDICES && made; i++) {
+    for (int i = 0; i < PART_INDICES && made; i++) {
         const struct gltf_accessor *accessor = &primitive->accessors[i];
         const char *name = gltf_attributes[i].name;
         uint64_t id = 0;
-        if (accessor->count == 0 || !gltf_is_packed(primitive, (enum import_array)i))
+        if (accessor->count == 0 || !gltf_is_packed(primitive, (enum part_array)i))
             continue;
-        if (!check_component(gltf, primitive, (enum import_array)i) ||
+        if (!check_component(gltf, primitive, (enum part_array)i) ||
             !gltf_whole(gltf, ids, &at, name, UINT32_MAX, &id))
             return false;
         json_int_t index = (json_int_t)json_array_size(small->accessors);
@@ -112,36 +112,27 @@ static char *write_small(const struct gltf *gltf, const struct gltf_primitive *p
     return text;
 }
 
-static bool copy_array(struct part *part, enum import_array array, const void *from)
-{
-    size_t bytes = part_count(part, array) * importer_array_words(array) * 4;
-    void *to = from ? part_add(part, array) : NULL;
-    if (to)
-        memcpy(to, from, bytes);
-    return to || !from;
-}
-
 static whit_result take(const struct gltf *gltf, const struct gltf_primitive *primitive,
                         const struct import_block *block, struct part *part)
 {
-    const struct import_part *from = block->parts;
+    const struct part *from = block->parts;
     if (block->part_count != 1 || from->vertex_count != primitive->vertex_count) {
         gltf_fail(gltf, &primitive->at, "Draco has other vertices than its accessors say");
         return WHIT_ERROR_INPUT;
     }
     part->triangle_count = from->triangle_count;
-    bool copied = copy_array(part, IMPORT_INDICES, from->indices) &&
-                  copy_array(part, IMPORT_POSITIONS, from->positions) &&
-                  copy_array(part, IMPORT_NORMALS, from->normals) &&
-                  copy_array(part, IMPORT_UV0, from->uvs[0]) &&
-                  copy_array(part, IMPORT_UV1, from->uvs[1]) &&
-                  copy_array(part, IMPORT_COLORS, from->colors) &&
-                  copy_array(part, IMPORT_TANGENTS, from->tangents);
-    float *colors = part->arrays[IMPORT_COLORS];
-    bool opaque = primitive->accessors[IMPORT_COLORS].components == 3;
-    for (size_t i = 0; copied && colors && opaque && i < part->vertex_count; i++)
+    for (int i = 0; i < PART_ARRAY_COUNT; i++) {
+        enum part_array array = (enum part_array)i;
+        if (from->arrays[i] && !part_add(part, array))
+            return WHIT_ERROR_MEMORY;
+        if (from->arrays[i])
+            memcpy(part->arrays[i], from->arrays[i], part_bytes(part, array));
+    }
+    float *colors = part->arrays[PART_COLORS];
+    bool opaque = primitive->accessors[PART_COLORS].components == 3;
+    for (size_t i = 0; colors && opaque && i < part->vertex_count; i++)
         colors[4 * i + 3] = 1.0f; /* assimp sets alpha to 0 where the file has none */
-    return copied ? WHIT_OK : WHIT_ERROR_MEMORY;
+    return WHIT_OK;
 }
 
 whit_result gltf_unpack(const struct gltf *gltf, const struct gltf_primitive *primitive,

@@ -15,10 +15,10 @@ enum { MODE_TRIANGLES = 4, MODE_STRIP = 5, MODE_FAN = 6 };
 
 static const char no_memory[] = "out of memory";
 
-const struct gltf_attribute gltf_attributes[IMPORT_INDICES] = {
-    [IMPORT_POSITIONS] = {"POSITION", "VEC3", 3}, [IMPORT_NORMALS] = {"NORMAL", "VEC3", 3},
-    [IMPORT_UV0] = {"TEXCOORD_0", "VEC2", 2},     [IMPORT_UV1] = {"TEXCOORD_1", "VEC2", 2},
-    [IMPORT_COLORS] = {"COLOR_0", "VEC4", 3},     [IMPORT_TANGENTS] = {"TANGENT", "VEC4", 4},
+const struct gltf_attribute gltf_attributes[PART_INDICES] = {
+    [PART_POSITIONS] = {"POSITION", "VEC3", 3}, [PART_NORMALS] = {"NORMAL", "VEC3", 3},
+    [PART_UV0] = {"TEXCOORD_0", "VEC2", 2},     [PART_UV1] = {"TEXCOORD_1", "VEC2", 2},
+    [PART_COLORS] = {"COLOR_0", "VEC4", 3},     [PART_TANGENTS] = {"TANGENT", "VEC4", 4},
 };
 
 /* --- what the file says --------------------------------------------------------------------- */
@@ -31,10 +31,10 @@ static bool plan_attributes(const struct gltf *gltf, const json_t *object,
     if (!gltf_object(gltf, object, &out->at, "attributes", &named))
         return false;
     out->attributes = named;
-    for (int i = 0; i < IMPORT_INDICES; i++) {
+    for (int i = 0; i < PART_INDICES; i++) {
         struct gltf_accessor *accessor = &out->accessors[i];
         const char *name = gltf_attributes[i].name;
-        uint32_t index, most = importer_array_words((enum import_array)i);
+        uint32_t index, most = part_words((enum part_array)i);
         if (!gltf_index(gltf, named, &at, name, gltf_count(gltf, "accessors"), &index))
             return false;
         if (index == SCENE_NONE)
@@ -49,12 +49,12 @@ static bool plan_attributes(const struct gltf *gltf, const json_t *object,
             return gltf_fail(gltf, &at, "%s has %u elements where there are %u vertices", name,
                              accessor->count, out->vertex_count);
     }
-    return out->accessors[IMPORT_POSITIONS].count || gltf_fail(gltf, &at, "there is no POSITION");
+    return out->accessors[PART_POSITIONS].count || gltf_fail(gltf, &at, "there is no POSITION");
 }
 
 static bool plan_indices(const struct gltf *gltf, const json_t *object, struct gltf_primitive *out)
 {
-    struct gltf_accessor *accessor = &out->accessors[IMPORT_INDICES];
+    struct gltf_accessor *accessor = &out->accessors[PART_INDICES];
     uint32_t index;
     out->corner_count = out->vertex_count;
     if (!gltf_index(gltf, object, &out->at, "indices", gltf_count(gltf, "accessors"), &index))
@@ -80,28 +80,28 @@ static uint32_t triangles_of(const struct gltf_primitive *primitive)
 
 /* Converts values from glTF's conventions to those of struct part: v upwards, and the sign of the
    bitangent as 1 or -1. */
-static void turn(enum import_array array, float *values, size_t count)
+static void turn(enum part_array array, float *values, size_t count)
 {
-    bool uv = array == IMPORT_UV0 || array == IMPORT_UV1;
+    bool uv = array == PART_UV0 || array == PART_UV1;
     for (size_t i = 0; uv && i < count; i++)
         values[2 * i + 1] = 1.0f - values[2 * i + 1];
-    for (size_t i = 0; array == IMPORT_TANGENTS && i < count; i++)
+    for (size_t i = 0; array == PART_TANGENTS && i < count; i++)
         values[4 * i + 3] = values[4 * i + 3] < 0 ? -1.0f : 1.0f;
 }
 
 static bool read_vertices(const struct gltf *gltf, const struct gltf_primitive *primitive,
                           struct part *part)
 {
-    for (int i = 0; i < IMPORT_INDICES; i++) {
+    for (int i = 0; i < PART_INDICES; i++) {
         const struct gltf_accessor *accessor = &primitive->accessors[i];
-        enum import_array array = (enum import_array)i;
-        bool alone = array == IMPORT_TANGENTS && !part->arrays[IMPORT_NORMALS];
+        enum part_array array = (enum part_array)i;
+        bool alone = array == PART_TANGENTS && !part->arrays[PART_NORMALS];
         if (accessor->count == 0 || part->arrays[i] || alone)
             continue;
         float *out = part_add(part, array);
         if (!out)
             return gltf_fail(gltf, &primitive->at, no_memory);
-        if (!gltf_read_rows(gltf, accessor, importer_array_words(array), out))
+        if (!gltf_read_rows(gltf, accessor, part_words(array), out))
             return false;
         turn(array, out, accessor->count);
     }
@@ -124,7 +124,7 @@ static bool read_triangles(const struct gltf_primitive *primitive, const uint32_
                            struct part *part)
 {
     part->triangle_count = triangles_of(primitive);
-    uint32_t *out = part_add(part, IMPORT_INDICES), used = 0;
+    uint32_t *out = part_add(part, PART_INDICES), used = 0;
     for (uint32_t i = 0; out && i < part->triangle_count; i++) {
         uint32_t *triangle = out + (size_t)used * 3;
         bool good = true;
@@ -142,7 +142,7 @@ static bool read_triangles(const struct gltf_primitive *primitive, const uint32_
 static bool read_indices(const struct gltf *gltf, const struct gltf_primitive *primitive,
                          struct part *part)
 {
-    const struct gltf_accessor *accessor = &primitive->accessors[IMPORT_INDICES];
+    const struct gltf_accessor *accessor = &primitive->accessors[PART_INDICES];
     uint32_t *corners = accessor->count ? array_alloc(accessor->count, sizeof *corners) : NULL;
     bool read = !corners || gltf_read_whole(gltf, accessor, corners);
     bool made = read && (corners || !accessor->count) && read_triangles(primitive, corners, part);
@@ -167,8 +167,7 @@ struct geometry {
 /* The primitives of a mesh that are drawn, each as a part. */
 struct mesh {
     struct part *parts;
-    struct import_part *views; /* part_view of each part */
-    struct model_part *used;
+    uint32_t *materials; /* of the scene, by part */
     uint32_t count;
     uint64_t counted_bytes; /* of the arrays of all parts */
 };
@@ -195,13 +194,13 @@ static bool afford(const struct gltf *gltf, const struct gltf_primitive *primiti
                    struct mesh *mesh)
 {
     uint64_t words = 3 * (uint64_t)triangles_of(primitive);
-    for (int i = 0; i < IMPORT_ARRAY_COUNT; i++) {
+    for (int i = 0; i < PART_ARRAY_COUNT; i++) {
         const struct gltf_accessor *accessor = &primitive->accessors[i];
-        if (accessor->count && !gltf_is_packed(primitive, (enum import_array)i) &&
+        if (accessor->count && !gltf_is_packed(primitive, (enum part_array)i) &&
             !gltf_check_elements(gltf, accessor))
             return false;
-        words += (uint64_t)accessor->count *
-                 (i == IMPORT_INDICES ? 1 : importer_array_words((enum import_array)i));
+        words +=
+            (uint64_t)accessor->count * (i == PART_INDICES ? 1 : part_words((enum part_array)i));
     }
     uint64_t later =
         scene_triangle_cost(triangles_of(primitive), primitive->vertex_count, 3 * sizeof(float));
@@ -234,8 +233,8 @@ static whit_result material_of(struct gltf *gltf, uint32_t index, uint32_t *mate
 static whit_result read_primitive(struct gltf *gltf, const struct gltf_primitive *primitive,
                                   const struct gltf_skin *skin, struct mesh *mesh)
 {
-    struct part *part = &mesh->parts[mesh->count];
-    struct model_part *used = &mesh->used[mesh->count++];
+    uint32_t *material = &mesh->materials[mesh->count];
+    struct part *part = &mesh->parts[mesh->count++];
     part->vertex_count = primitive->vertex_count;
     if (!afford(gltf, primitive, mesh))
         return WHIT_ERROR_INPUT;
@@ -243,16 +242,16 @@ static whit_result read_primitive(struct gltf *gltf, const struct gltf_primitive
     if (result != WHIT_OK)
         return result;
     if (!read_vertices(gltf, primitive, part) ||
-        (!part->arrays[IMPORT_INDICES] && !read_indices(gltf, primitive, part)) ||
+        (!part->arrays[PART_INDICES] && !read_indices(gltf, primitive, part)) ||
         (skin && !gltf_skin_apply(gltf, skin, primitive, part)))
         return WHIT_ERROR_INPUT;
     note_lost(gltf, primitive, part);
-    return material_of(gltf, primitive->material, &used->material);
+    return material_of(gltf, primitive->material, material);
 }
 
 static bool has_map_with_tangents(const struct gltf *gltf, const struct gltf_primitive *primitive)
 {
-    if (!primitive->accessors[IMPORT_TANGENTS].count || primitive->material == SCENE_NONE)
+    if (!primitive->accessors[PART_TANGENTS].count || primitive->material == SCENE_NONE)
         return false;
     const struct scene_material *m = &gltf->scene->materials[gltf->materials[primitive->material]];
     return m->textures[SCENE_SLOT_NORMAL].texture != SCENE_NONE;
@@ -297,9 +296,8 @@ static whit_result read_mesh(struct geometry *geometry, uint32_t index, const js
 {
     size_t count = json_array_size(primitives);
     mesh->parts = array_alloc_zeroed(count, sizeof *mesh->parts);
-    mesh->views = array_alloc_zeroed(count, sizeof *mesh->views);
-    mesh->used = array_alloc_zeroed(count, sizeof *mesh->used);
-    whit_result result = mesh->parts && mesh->views && mesh->used ? WHIT_OK : WHIT_ERROR_MEMORY;
+    mesh->materials = array_alloc(count, sizeof *mesh->materials);
+    whit_result result = mesh->parts && mesh->materials ? WHIT_OK : WHIT_ERROR_MEMORY;
     for (size_t i = 0; i < count && result == WHIT_OK; i++) {
         struct gltf_place at = gltf_place("meshes[%u].primitives[%zu]", index, i);
         result = add_primitive(geometry, &at, json_array_get(primitives, i), mesh);
@@ -321,20 +319,13 @@ static whit_result load_mesh(struct geometry *geometry, uint32_t index, uint32_t
         return WHIT_ERROR_INPUT;
     whit_result result = read_mesh(geometry, index, primitives, &mesh);
     scene_give_back(gltf->scene, mesh.counted_bytes); /* the scene's own copy is counted instead */
-    if (!name)
-        name = at.text;
-    for (uint32_t i = 0; i < mesh.count; i++) {
-        mesh.views[i] = part_view(&mesh.parts[i]);
-        mesh.used[i].part = &mesh.views[i];
-        mesh.used[i].name = name;
-    }
     if (result == WHIT_OK && mesh.count)
-        result = model_add_mesh(gltf->scene, name, mesh.used, mesh.count, false, out);
+        result = model_add_mesh(gltf->scene, name ? name : at.text, mesh.parts, mesh.materials,
+                                mesh.count, false, out);
     for (uint32_t i = 0; i < mesh.count; i++)
         part_finish(&mesh.parts[i]);
     free(mesh.parts);
-    free(mesh.views);
-    free(mesh.used);
+    free(mesh.materials);
     return result;
 }
 

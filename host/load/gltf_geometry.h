@@ -8,8 +8,8 @@
 struct gltf_primitive {
     struct gltf_place at;
     uint32_t mode, material, vertex_count, corner_count;
-    /* By enum import_array; a count of 0: absent. */
-    struct gltf_accessor accessors[IMPORT_ARRAY_COUNT];
+    /* By enum part_array; a count of 0: absent. */
+    struct gltf_accessor accessors[PART_ARRAY_COUNT];
     const json_t *attributes;
     const json_t *draco; /* the extension, or NULL */
 };
@@ -18,7 +18,7 @@ struct gltf_attribute {
     const char *name, *type;
     uint32_t least; /* fewest components that an accessor may have */
 };
-extern const struct gltf_attribute gltf_attributes[IMPORT_INDICES];
+extern const struct gltf_attribute gltf_attributes[PART_INDICES];
 
 whit_result gltf_load_meshes(struct gltf *gltf);
 

@@ -144,7 +144,7 @@ static void note_unread(const struct gltf *gltf, const struct gltf_primitive *pr
 bool gltf_skin_apply(const struct gltf *gltf, const struct gltf_skin *skin,
                      const struct gltf_primitive *primitive, struct part *part)
 {
-    float *positions = part->arrays[IMPORT_POSITIONS], *normals = part->arrays[IMPORT_NORMALS];
+    float *positions = part->arrays[PART_POSITIONS], *normals = part->arrays[PART_NORMALS];
     float *joints = NULL, *weights = NULL;
     bool packed =
         json_object_get(json_object_get(primitive->draco, "attributes"), "JOINTS_0") != NULL;

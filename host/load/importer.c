@@ -13,112 +13,78 @@
 #define REPLY_PER_BYTE 64
 #define REPLY_BASE     (UINT64_C(64) << 20)
 
-uint32_t importer_array_words(enum import_array array)
+/* What is left of a reply. */
+struct rest {
+    uint8_t *at;
+    size_t bytes;
+};
+
+/* The next bytes; NULL: there are not as many. */
+static void *take(struct rest *rest, size_t bytes)
 {
-    static const uint32_t words[IMPORT_ARRAY_COUNT] = {3, 3, 2, 2, 4, 4, 3};
-    return words[array];
+    size_t padded = (bytes + 3) & ~(size_t)3;
+    if (padded > rest->bytes)
+        return NULL;
+    void *taken = rest->at;
+    rest->at += padded;
+    rest->bytes -= padded;
+    return taken;
 }
 
-/* *spent: total size of all records' strings and arrays so far. It may not exceed the block's size,
-   so that records of a small block cannot share one array many times. */
-static bool check_string(const uint8_t *data, size_t size_bytes, uint64_t offset, uint32_t bytes,
-                         uint64_t *spent, const char **out)
+static char *take_string(struct rest *rest, uint32_t bytes)
 {
-    *spent += (uint64_t)bytes + 1;
-    if (offset > size_bytes || size_bytes - offset < (uint64_t)bytes + 1 || *spent > size_bytes)
-        return false;
-    if (data[offset + bytes] != 0 || memchr(data + offset, 0, bytes))
-        return false;
-    *out = (const char *)data + offset;
-    return true;
+    char *text = take(rest, (size_t)bytes + 1);
+    return text && memchr(text, 0, (size_t)bytes + 1) == text + bytes ? text : NULL;
 }
 
-static bool check_indices(const uint32_t *indices, uint32_t triangle_count, uint32_t vertex_count)
+static bool check_indices(const struct part *part)
 {
+    const uint32_t *indices = part->arrays[PART_INDICES];
     uint32_t largest = 0;
-    for (size_t i = 0; i < (size_t)triangle_count * 3; i++)
+    for (size_t i = 0; i < (size_t)part->triangle_count * 3; i++)
         largest = indices[i] > largest ? indices[i] : largest;
-    return largest < vertex_count;
+    return largest < part->vertex_count;
 }
 
-static bool check_array(const uint8_t *data, size_t size_bytes, const struct import_record *record,
-                        enum import_array array, uint64_t *spent, const void **out)
+static bool take_part(struct rest *rest, struct part *part)
 {
-    *out = NULL;
-    uint64_t offset = record->arrays[array];
-    if (offset == 0)
-        return array != IMPORT_POSITIONS && array != IMPORT_INDICES;
-    uint64_t count = array == IMPORT_INDICES ? record->triangle_count : record->vertex_count;
-    uint64_t bytes = count * importer_array_words(array) * 4;
-    *spent += bytes;
-    if (offset % 4 || offset > size_bytes || size_bytes - offset < bytes || *spent > size_bytes)
+    const uint32_t needed = 1u << PART_POSITIONS | 1u << PART_INDICES;
+    const struct import_record *record = take(rest, sizeof *record);
+    if (!record || (record->arrays & needed) != needed || record->arrays >> PART_ARRAY_COUNT)
         return false;
-    *out = data + offset;
-    return true;
+    part->vertex_count = record->vertex_count;
+    part->triangle_count = record->triangle_count;
+    part->name = take_string(rest, record->name_bytes);
+    part->material = part->name ? take_string(rest, record->material_bytes) : NULL;
+    bool there = part->material && part->vertex_count && part->triangle_count;
+    for (int i = 0; there && i < PART_ARRAY_COUNT; i++) {
+        if (record->arrays >> i & 1)
+            part->arrays[i] = take(rest, part_bytes(part, (enum part_array)i));
+        there = part->arrays[i] || !(record->arrays >> i & 1);
+    }
+    return there && check_indices(part);
 }
 
-static bool check_record(const uint8_t *data, size_t size_bytes, const struct import_record *record,
-                         uint64_t *spent, struct import_part *part)
+whit_result importer_parse(uint8_t *data, size_t size_bytes, struct import_block *block)
 {
-    const void *arrays[IMPORT_ARRAY_COUNT];
-    for (int i = 0; i < IMPORT_ARRAY_COUNT; i++)
-        if (!check_array(data, size_bytes, record, (enum import_array)i, spent, &arrays[i]))
-            return false;
-    *part = (struct import_part){
-        .vertex_count = record->vertex_count,
-        .triangle_count = record->triangle_count,
-        .positions = arrays[IMPORT_POSITIONS],
-        .normals = arrays[IMPORT_NORMALS],
-        .uvs = {arrays[IMPORT_UV0], arrays[IMPORT_UV1]},
-        .colors = arrays[IMPORT_COLORS],
-        .tangents = arrays[IMPORT_TANGENTS],
-        .indices = arrays[IMPORT_INDICES],
-    };
-    return record->vertex_count > 0 && record->triangle_count > 0 &&
-           check_string(data, size_bytes, record->name, record->name_bytes, spent, &part->name) &&
-           check_string(data, size_bytes, record->material, record->material_bytes, spent,
-                        &part->material) &&
-           check_indices(part->indices, part->triangle_count, part->vertex_count);
-}
-
-bool importer_parse(const uint8_t *data, size_t size_bytes, struct import_block *block,
-                    char *reason, size_t reason_bytes)
-{
-    struct import_header header;
-    uint32_t magic = 0;
-    if (size_bytes >= sizeof magic)
-        memcpy(&magic, data, sizeof magic);
-    if (magic == IMPORT_ERROR_MAGIC) {
-        foreign_text(data + sizeof magic, size_bytes - sizeof magic, reason, reason_bytes);
-        return false;
+    struct rest rest = {data, size_bytes};
+    const struct import_header *header = take(&rest, sizeof *header);
+    if (!header || header->part_count > rest.bytes / sizeof(struct import_record))
+        return WHIT_ERROR_INPUT;
+    block->counts = header->counts;
+    if (header->part_count == 0 && rest.bytes) {
+        block->glb = rest.at;
+        block->glb_bytes = rest.bytes;
+        return WHIT_OK;
     }
-    snprintf(reason, reason_bytes, "the importer's reply is damaged");
-    if (magic != IMPORT_MAGIC || size_bytes < sizeof header)
-        return false;
-    memcpy(&header, data, sizeof header);
-    size_t room = size_bytes - sizeof header;
-    if (header.size_bytes != size_bytes || header.part_count > room / sizeof(struct import_record))
-        return false;
-    block->counts = header.counts;
-    if (header.part_count == 0 && room) {
-        block->glb = data + sizeof header;
-        block->glb_bytes = room;
-        return true;
-    }
-    block->parts = array_alloc_zeroed(header.part_count, sizeof *block->parts);
-    if (!block->parts) {
-        snprintf(reason, reason_bytes, "out of memory");
-        return false;
-    }
-    uint64_t spent = 0;
-    for (uint32_t i = 0; i < header.part_count; i++) {
-        struct import_record record;
-        memcpy(&record, data + sizeof header + i * sizeof record, sizeof record);
-        if (!check_record(data, size_bytes, &record, &spent, &block->parts[i]))
-            return false;
-    }
-    block->part_count = header.part_count;
-    return true;
+    block->parts = array_alloc_zeroed(header->part_count, sizeof *block->parts);
+    if (!block->parts)
+        return WHIT_ERROR_MEMORY;
+    block->part_count = header->part_count;
+    for (uint32_t i = 0; i < block->part_count; i++)
+        if (!take_part(&rest, &block->parts[i]))
+            return WHIT_ERROR_INPUT;
+    return rest.bytes ? WHIT_ERROR_INPUT : WHIT_OK;
 }
 
 /* Logs assimp's reason with the real path in place of the name under which assimp got the file. */
@@ -145,20 +111,21 @@ whit_result importer_run(const whit_log *log, const char *path,
     struct child_limits limits =
         foreign_limits(&foreign, "importer", bytes, bytes * REPLY_PER_BYTE + REPLY_BASE);
     struct import_request copy = *request;
-    char reason[FOREIGN_REASON_BYTES];
+    struct foreign_answer answer;
     whit_result result =
-        foreign_run(log, &limits, importer_assimp_run, &copy, &block->reply, reason);
+        foreign_ask(log, &limits, importer_assimp_run, &copy, &block->reply, &answer);
     if (result != WHIT_OK) {
-        log_error(log, "%s: %s", path, reason);
-        importer_finish(block);
-        return result;
+        log_reason(log, path, request->files[0].name, answer.reason);
+    } else {
+        result = importer_parse(block->reply.data, block->reply.size_bytes - sizeof answer, block);
+        if (result != WHIT_OK)
+            log_error(log, "%s: %s", path,
+                      result == WHIT_ERROR_MEMORY ? "out of memory"
+                                                  : "the importer's reply is damaged");
     }
-    if (!importer_parse(block->reply.data, block->reply.size_bytes, block, reason, sizeof reason)) {
-        log_reason(log, path, request->files[0].name, reason);
+    if (result != WHIT_OK)
         importer_finish(block);
-        return WHIT_ERROR_INPUT;
-    }
-    return WHIT_OK;
+    return result;
 }
 
 void importer_finish(struct import_block *block)

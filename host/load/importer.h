@@ -1,11 +1,10 @@
-/* Foreign importers in a child process. The child replies with one flat block of triangles, which
-   the parent uses only after importer_parse has checked every offset, count, string and index. */
+/* Foreign importers in a child process. The parent uses what the child replies only after
+   importer_parse has checked every count, string and index. */
 #ifndef LOAD_IMPORTER_H
 #define LOAD_IMPORTER_H
 
-#include "base/child.h"
-#include "base/log.h"
 #include "load/load.h"
+#include "load/part.h"
 
 /* For formats from IMPORT_FBX on, the reply is the whole scene as a GLB; else triangles alone. */
 enum import_kind {
@@ -34,17 +33,6 @@ struct import_request {
     bool has_smooth_groups; /* normals mark them, see obj_mark_smooth_groups */
 };
 
-/* Triangles of one group and material. Pointers are into the block; optional arrays are NULL. */
-struct import_part {
-    const char *name;
-    const char *material; /* name, "" when there is none */
-    uint32_t vertex_count, triangle_count;
-    const float *positions, *normals; /* 3 per vertex */
-    const float *uvs[2];              /* 2 per vertex, v upwards as assimp has it */
-    const float *colors, *tangents;   /* 4 per vertex */
-    const uint32_t *indices;
-};
-
 /* The most corners of a face. In the worst case assimp triangulates a face in cubic time: 1.2 s for
    this many corners, 9 s for twice as many (AMD EPYC). */
 #define IMPORT_CORNERS_MAX 1024u
@@ -61,7 +49,7 @@ struct import_counts {
 
 struct import_block {
     struct child_reply reply;
-    struct import_part *parts;
+    struct part *parts; /* their arrays and names are in `reply` */
     uint32_t part_count;
     const uint8_t *glb; /* in `reply`; NULL: there are parts instead */
     size_t glb_bytes;
@@ -75,45 +63,27 @@ WHIT_CHECK whit_result importer_run(const whit_log *log, const char *path,
                                     const whit_load_params *params, struct import_block *block);
 void importer_finish(struct import_block *block);
 
-/* The checks of importer_run, on any bytes: fills parts and counts of *block, or gives a reason.
-   `data` is 8-byte aligned and outlives the block. */
-WHIT_CHECK bool importer_parse(const uint8_t *data, size_t size_bytes, struct import_block *block,
-                               char *reason, size_t reason_bytes);
+/* The checks of importer_run, on any bytes, 4-byte aligned: fills parts, GLB and counts of *block.
+   WHIT_ERROR_INPUT: the data are damaged; or _MEMORY. */
+WHIT_CHECK whit_result importer_parse(uint8_t *data, size_t size_bytes, struct import_block *block);
 
-/* Layout of the block: header, part records, then strings and arrays anywhere behind them.
-   Offsets count from the start of the block; 0: absent. Arrays are 4-byte aligned. */
-#define IMPORT_MAGIC       0x4b4c4257u /* "WBLK" */
-#define IMPORT_ERROR_MAGIC 0x52524557u /* "WERR": text up to the end follows the magic */
-
-/* With no parts and `corners` 0, a GLB follows the header up to the end. */
+/* A reply begins with this. Parts follow, or without any a GLB up to the end. A model that is
+   refused for a face of too many corners has neither. */
 struct import_header {
-    uint32_t magic, part_count;
-    uint64_t size_bytes;
     struct import_counts counts;
+    uint32_t part_count;
 };
 
-enum import_array {
-    IMPORT_POSITIONS,
-    IMPORT_NORMALS,
-    IMPORT_UV0,
-    IMPORT_UV1,
-    IMPORT_COLORS,
-    IMPORT_TANGENTS,
-    IMPORT_INDICES,
-    IMPORT_ARRAY_COUNT
-};
-
+/* A part in the reply: this, its name, its material and its arrays, in this order and each padded
+   to 4 bytes. Strings end with a zero byte, which is not counted. */
 struct import_record {
-    uint64_t name, material; /* offsets of zero-terminated strings */
-    uint32_t name_bytes, material_bytes;
-    uint32_t vertex_count, triangle_count;
-    uint64_t arrays[IMPORT_ARRAY_COUNT];
+    uint32_t name_bytes, material_bytes, vertex_count, triangle_count;
+    uint32_t arrays; /* bit i: array i is there */
 };
 
-/* 4-byte words per vertex (per triangle: indices). */
-uint32_t importer_array_words(enum import_array array);
-
-/* Runs in the child: imports and writes the block; gives the exit code. `user`: import_request. */
-int importer_assimp_run(void *user, void *to, child_write write);
+/* Runs in the child: imports and writes the reply, or gives the reason why not. `user`:
+   import_request. */
+whit_result importer_assimp_run(void *user, void *to, child_write write,
+                                struct foreign_answer *answer);
 
 #endif

@@ -1,4 +1,4 @@
-/* The child's side of the importer: assimp's scene, flattened into the block of importer.h. */
+/* The child's side of the importer: assimp's scene, flattened into the parts of importer.h. */
 #include "load/importer.h"
 
 #include <assimp/cexport.h>
@@ -9,6 +9,7 @@
 #include <assimp/mesh.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,7 +17,6 @@
 #include "base/file.h"
 #include "base/key_table.h"
 #include "load/importer_glb.h"
-#include "load/part.h"
 #include "load/threemf.h"
 #include "load/unread.h"
 
@@ -113,15 +113,16 @@ static void close_file(struct aiFileIO *io, struct aiFile *file)
 
 /* --- one part ------------------------------------------------------------------------------ */
 
-static bool copy_vec3(struct part *part, enum import_array array, const struct aiVector3D *from)
+/* Copies an array whose elements assimp has as whit has them. */
+static bool copy_plain(struct part *part, enum part_array array, const void *from)
 {
     float *out = part_add(part, array);
     if (out)
-        memcpy(out, from, (size_t)part->vertex_count * sizeof *from);
+        memcpy(out, from, part_bytes(part, array));
     return out;
 }
 
-static bool copy_uvs(struct part *part, enum import_array array, const struct aiVector3D *from)
+static bool copy_uvs(struct part *part, enum part_array array, const struct aiVector3D *from)
 {
     float *out = part_add(part, array);
     for (uint32_t i = 0; out && i < part->vertex_count; i++) {
@@ -133,7 +134,7 @@ static bool copy_uvs(struct part *part, enum import_array array, const struct ai
 
 static bool copy_tangents(struct part *part, const struct aiMesh *mesh)
 {
-    float *out = part_add(part, IMPORT_TANGENTS);
+    float *out = part_add(part, PART_TANGENTS);
     for (uint32_t i = 0; out && i < part->vertex_count; i++) {
         struct aiVector3D n = mesh->mNormals[i], t = mesh->mTangents[i], b = mesh->mBitangents[i];
         float side = (n.y * t.z - n.z * t.y) * b.x + (n.z * t.x - n.x * t.z) * b.y +
@@ -177,7 +178,7 @@ static void count_faces(const struct aiMesh *mesh, struct part *part, struct imp
 
 static bool copy_indices(struct part *part, const struct aiMesh *mesh)
 {
-    uint32_t *out = part_add(part, IMPORT_INDICES);
+    uint32_t *out = part_add(part, PART_INDICES);
     size_t used = 0;
     for (uint32_t i = 0; out && i < mesh->mNumFaces; i++) {
         const struct aiFace *face = &mesh->mFaces[i];
@@ -191,19 +192,15 @@ static bool copy_indices(struct part *part, const struct aiMesh *mesh)
 
 static bool copy_arrays(struct part *part, const struct aiMesh *mesh, enum import_kind kind)
 {
-    bool ok = copy_indices(part, mesh) && copy_vec3(part, IMPORT_POSITIONS, mesh->mVertices);
+    bool ok = copy_indices(part, mesh) && copy_plain(part, PART_POSITIONS, mesh->mVertices);
     /* Normals of an STL are left out: they are the facets' normals, or wrong. */
     if (ok && mesh->mNormals && kind != IMPORT_STL)
-        ok = copy_vec3(part, IMPORT_NORMALS, mesh->mNormals);
+        ok = copy_plain(part, PART_NORMALS, mesh->mNormals);
     for (int i = 0; i < 2; i++)
         if (ok && mesh->mTextureCoords[i])
-            ok = copy_uvs(part, i ? IMPORT_UV1 : IMPORT_UV0, mesh->mTextureCoords[i]);
-    if (ok && mesh->mColors[0]) {
-        float *out = part_add(part, IMPORT_COLORS);
-        ok = out;
-        if (ok)
-            memcpy(out, mesh->mColors[0], (size_t)mesh->mNumVertices * 4 * sizeof *out);
-    }
+            ok = copy_uvs(part, i ? PART_UV1 : PART_UV0, mesh->mTextureCoords[i]);
+    if (ok && mesh->mColors[0])
+        ok = copy_plain(part, PART_COLORS, mesh->mColors[0]);
     if (ok && mesh->mTangents && mesh->mBitangents && mesh->mNormals)
         ok = copy_tangents(part, mesh);
     return ok;
@@ -213,7 +210,6 @@ static bool copy_arrays(struct part *part, const struct aiMesh *mesh, enum impor
 
 struct flat {
     struct part *parts;
-    struct import_record *records; /* what the block holds of each part */
     uint32_t count;
     struct import_counts counts;
 };
@@ -245,8 +241,7 @@ static bool flatten(struct flat *flat, const struct aiScene *scene,
 {
     enum import_kind kind = request->kind;
     flat->parts = array_alloc_zeroed(scene->mNumMeshes, sizeof *flat->parts);
-    flat->records = array_alloc_zeroed(scene->mNumMeshes, sizeof *flat->records);
-    if (!flat->parts || !flat->records)
+    if (!flat->parts)
         return false;
     for (uint32_t i = 0; i < scene->mNumMeshes; i++)
         if (!flatten_mesh(flat, scene, scene->mMeshes[i], kind))
@@ -261,91 +256,52 @@ static void flat_finish(struct flat *flat)
     for (uint32_t i = 0; i < flat->count; i++)
         part_finish(&flat->parts[i]);
     free(flat->parts);
-    free(flat->records);
 }
 
 /* --- writing ------------------------------------------------------------------------------- */
 
-static uint64_t array_bytes(const struct part *part, enum import_array array)
+/* Writes end in no reply where one of them fails: their results need no check. */
+static void write_header(const struct import_counts *counts, uint32_t part_count, void *to,
+                         child_write write)
 {
-    return (uint64_t)part_count(part, array) * importer_array_words(array) * 4;
+    const struct import_header header = {*counts, part_count};
+    (void)write(to, &header, sizeof header);
 }
 
-static uint64_t place(uint64_t *at, uint64_t bytes)
+static void write_padded(void *to, child_write write, const void *data, size_t bytes)
 {
-    uint64_t offset = *at;
-    *at = (offset + bytes + 7) & ~UINT64_C(7);
-    return offset;
+    static const uint8_t zeros[4];
+    (void)write(to, data, bytes);
+    (void)write(to, zeros, (4 - bytes % 4) % 4);
 }
 
-/* Fills all records with offsets into the block; gives the block's size in bytes. */
-static uint64_t layout(struct flat *flat)
+static void write_part(const struct part *part, void *to, child_write write)
 {
-    uint64_t at = sizeof(struct import_header) + flat->count * sizeof(struct import_record);
-    for (uint32_t i = 0; i < flat->count; i++) {
-        const struct part *part = &flat->parts[i];
-        struct import_record *record = &flat->records[i];
-        record->vertex_count = part->vertex_count;
-        record->triangle_count = part->triangle_count;
-        record->name_bytes = (uint32_t)strlen(part->name);
-        record->material_bytes = (uint32_t)strlen(part->material);
-        record->name = place(&at, (uint64_t)record->name_bytes + 1);
-        record->material = place(&at, (uint64_t)record->material_bytes + 1);
-        for (int a = 0; a < IMPORT_ARRAY_COUNT; a++)
-            if (part->arrays[a])
-                record->arrays[a] = place(&at, array_bytes(part, (enum import_array)a));
-    }
-    return at;
-}
-
-static bool write_padded(void *to, child_write write, const void *data, uint64_t bytes)
-{
-    static const uint8_t zeros[8];
-    uint64_t pad = (8 - bytes % 8) % 8;
-    return (bytes == 0 || write(to, data, (size_t)bytes)) &&
-           (pad == 0 || write(to, zeros, (size_t)pad));
-}
-
-static bool write_part(const struct part *part, void *to, child_write write)
-{
-    bool ok = write_padded(to, write, part->name, strlen(part->name) + 1) &&
-              write_padded(to, write, part->material, strlen(part->material) + 1);
-    for (int a = 0; ok && a < IMPORT_ARRAY_COUNT; a++)
+    struct import_record record = {(uint32_t)strlen(part->name), (uint32_t)strlen(part->material),
+                                   part->vertex_count, part->triangle_count, 0};
+    for (int a = 0; a < PART_ARRAY_COUNT; a++)
+        record.arrays |= part->arrays[a] ? 1u << a : 0;
+    (void)write(to, &record, sizeof record);
+    write_padded(to, write, part->name, record.name_bytes + (size_t)1);
+    write_padded(to, write, part->material, record.material_bytes + (size_t)1);
+    for (int a = 0; a < PART_ARRAY_COUNT; a++)
         if (part->arrays[a])
-            ok = write_padded(to, write, part->arrays[a], array_bytes(part, (enum import_array)a));
-    return ok;
+            (void)write(to, part->arrays[a], part_bytes(part, (enum part_array)a));
 }
 
-static bool write_block(struct flat *flat, void *to, child_write write)
+static whit_result refuse(struct foreign_answer *answer, const char *who, const char *text)
 {
-    struct import_header header = {
-        .magic = IMPORT_MAGIC, .part_count = flat->count, .counts = flat->counts};
-    header.size_bytes = layout(flat);
-    bool ok = write(to, &header, sizeof header);
-    for (uint32_t i = 0; ok && i < flat->count; i++)
-        ok = write(to, &flat->records[i], sizeof flat->records[i]);
-    for (uint32_t i = 0; ok && i < flat->count; i++)
-        ok = write_part(&flat->parts[i], to, write);
-    return ok;
+    snprintf(answer->reason, sizeof answer->reason, "%s%s", who, text);
+    return WHIT_ERROR_INPUT;
 }
 
-static int refuse(const char *who, const char *text, void *to, child_write write)
+static whit_result pass_on_error(struct foreign_answer *answer)
 {
-    const uint32_t magic = IMPORT_ERROR_MAGIC;
-    bool ok = write(to, &magic, sizeof magic) && write(to, who, strlen(who)) &&
-              write(to, text, strlen(text));
-    return ok ? 0 : 1;
-}
-
-static int write_error(const char *text, void *to, child_write write)
-{
+    const char *text = aiGetErrorString();
     if (strstr(text, "bad_alloc"))
-        return CHILD_EXIT_MEMORY;
-    return refuse("assimp: ", text[0] ? text : "refused without a reason", to, write);
+        return WHIT_ERROR_MEMORY;
+    return refuse(answer, "assimp: ", text[0] ? text : "refused without a reason");
 }
-
-_Static_assert(sizeof(struct import_header) % 8 == 0, "records follow the header");
-_Static_assert(sizeof(struct import_record) % 8 == 0, "strings follow the records");
 
 /* Finds a face with more than IMPORT_CORNERS_MAX corners, before assimp triangulates. */
 static bool has_long_face(const struct aiScene *scene, struct import_counts *counts)
@@ -406,72 +362,65 @@ static void cut_bad_polygons(const struct aiScene *scene)
     }
 }
 
-/* Triangulates and writes the block of parts; gives the exit code. *scene is NULL where assimp has
-   released it. */
-static int write_triangles(const struct aiScene **scene, const struct import_request *request,
-                           struct import_counts *counts, void *to, child_write write)
+/* Triangulates and writes all parts. *scene is NULL where assimp has released it. */
+static whit_result write_triangles(const struct aiScene **scene,
+                                   const struct import_request *request,
+                                   const struct import_counts *counts, void *to, child_write write)
 {
     struct flat flat = {.counts = *counts};
-    int code = 1;
     cut_bad_polygons(*scene);
     *scene = aiApplyPostProcessing(*scene, aiProcess_Triangulate);
-    if (!*scene || !flatten(&flat, *scene, request))
-        code = CHILD_EXIT_MEMORY; /* nothing else stops either step */
-    else if (write_block(&flat, to, write))
-        code = 0;
+    bool made = *scene && flatten(&flat, *scene, request); /* memory alone stops either step */
+    if (made)
+        write_header(&flat.counts, flat.count, to, write);
+    for (uint32_t i = 0; made && i < flat.count; i++)
+        write_part(&flat.parts[i], to, write);
     flat_finish(&flat);
-    return code;
-}
-
-/* Writes a header without parts: alone, to refuse the model, or in front of a GLB. */
-static bool write_header(const struct import_counts *counts, size_t glb_bytes, void *to,
-                         child_write write)
-{
-    const struct import_header header = {
-        .magic = IMPORT_MAGIC, .size_bytes = sizeof header + glb_bytes, .counts = *counts};
-    return write(to, &header, sizeof header);
+    return made ? WHIT_OK : WHIT_ERROR_MEMORY;
 }
 
 /* *scene is NULL where assimp has released it. */
-static int write_glb(const struct aiScene **scene, const struct import_request *request,
-                     struct import_counts *counts, void *to, child_write write)
+static whit_result write_glb(const struct aiScene **scene, const struct import_request *request,
+                             struct import_counts *counts, void *to, child_write write,
+                             struct foreign_answer *answer)
 {
     if (!(*scene)->mRootNode) /* assimp 5.2.4 reports no error where it cannot read a 3MF's XML */
-        return write_error("the file has no model that it can read", to, write);
+        return refuse(answer, "assimp: ", "the file has no model that it can read");
     const struct aiExportDataBlob *blob = importer_glb(scene, request, counts);
     if (!blob)
-        return write_error(aiGetErrorString(), to, write);
-    bool ok = write_header(counts, blob->size, to, write) && write(to, blob->data, blob->size);
+        return pass_on_error(answer);
+    write_header(counts, 0, to, write);
+    (void)write(to, blob->data, blob->size);
     aiReleaseExportBlob(blob);
-    return ok ? 0 : 1;
+    return WHIT_OK;
 }
 
-int importer_assimp_run(void *user, void *to, child_write write)
+whit_result importer_assimp_run(void *user, void *to, child_write write,
+                                struct foreign_answer *answer)
 {
     const struct import_request *request = user;
     struct library library = {.request = request};
     struct import_counts counts = {0};
-    int code;
+    whit_result result = WHIT_OK;
     if (request->kind == IMPORT_3MF) {
         const struct import_file *file = &request->files[0];
         const struct threemf_head head = threemf_read(file->data, file->size_bytes);
         if (head.refused[0])
-            return refuse("", head.refused, to, write);
+            return refuse(answer, "", head.refused);
     }
     const char *refusal = request->kind == IMPORT_DAE ? unread_refusal(request->files) : NULL;
     if (refusal)
-        return refuse("", refusal, to, write);
+        return refuse(answer, "", refusal);
     const struct aiScene *scene = import(&library);
     if (!scene)
-        return library.lacks_memory ? CHILD_EXIT_MEMORY
-                                    : write_error(aiGetErrorString(), to, write);
+        return library.lacks_memory ? WHIT_ERROR_MEMORY : pass_on_error(answer);
     if (has_long_face(scene, &counts))
-        code = write_header(&counts, 0, to, write) ? 0 : 1;
+        write_header(&counts, 0, to, write);
     else if (request->kind >= IMPORT_FBX)
-        code = write_glb(&scene, request, &counts, to, write);
+        result = write_glb(&scene, request, &counts, to, write, answer);
     else
-        code = write_triangles(&scene, request, &counts, to, write);
+        result = write_triangles(&scene, request, &counts, to, write);
     if (scene)
         aiReleaseImport(scene);
-    return code;
+    return result;
 }

@@ -96,15 +96,15 @@ static void make_default(const char *name, bool colored, struct scene_material *
 }
 
 static whit_result make_material(struct scene *scene, const struct model_request *request,
-                                 struct palette *palette, const struct import_part *part,
+                                 struct palette *palette, const struct part *part,
                                  struct scene_material *out)
 {
     const struct mtl_entry *entry = mtl_find(palette->library, part->material);
     if (entry)
         return mtl_material(scene, entry, request->params, out);
     bool named = part->material[0] && strcmp(part->material, "DefaultMaterial") != 0;
-    bool textured = palette->texture && part->uvs[0];
-    make_default(named ? part->material : "default", part->colors || textured, out);
+    bool textured = palette->texture && part->arrays[PART_UV0];
+    make_default(named ? part->material : "default", part->arrays[PART_COLORS] || textured, out);
     if (textured) {
         char *path = picture_find_named(&scene->roots, request->path, palette->texture);
         whit_result result = path ? load_texture(scene, path, NULL, 0, request->params,
@@ -121,8 +121,7 @@ static whit_result make_material(struct scene *scene, const struct model_request
 }
 
 static whit_result find_material(struct scene *scene, const struct model_request *request,
-                                 struct palette *palette, const struct import_part *part,
-                                 uint32_t *index)
+                                 struct palette *palette, const struct part *part, uint32_t *index)
 {
     size_t name_bytes = strlen(part->material);
     if (key_table_find(&palette->indices, part->material, name_bytes, index))
@@ -147,7 +146,7 @@ static float paint_channel(const struct import_block *block, size_t channel, flo
 {
     float largest = 0;
     for (uint32_t i = 0; i < block->part_count; i++) {
-        float *colors = (float *)(uintptr_t)block->parts[i].colors;
+        float *colors = block->parts[i].arrays[PART_COLORS];
         size_t end = colors ? (size_t)block->parts[i].vertex_count * 4 : 0;
         for (size_t k = channel; k < end; k += 4) {
             float value = fmaxf(colors[k] * scale + offset, 0);
@@ -180,22 +179,19 @@ static whit_result add_block(struct scene *scene, const struct model_request *re
 {
     paint_colors(block, &file->paint);
     struct palette palette = {.library = &file->library, .texture = file->paint.texture};
-    struct model_part *parts = array_alloc_zeroed(block->part_count, sizeof *parts);
-    whit_result result = parts ? WHIT_OK : WHIT_ERROR_MEMORY;
-    for (uint32_t i = 0; result == WHIT_OK && i < block->part_count; i++) {
-        parts[i].part = &block->parts[i];
-        parts[i].name = block->parts[i].name;
-        result = find_material(scene, request, &palette, &block->parts[i], &parts[i].material);
-    }
+    uint32_t *materials = array_alloc(block->part_count, sizeof *materials);
+    whit_result result = materials ? WHIT_OK : WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; result == WHIT_OK && i < block->part_count; i++)
+        result = find_material(scene, request, &palette, &block->parts[i], &materials[i]);
     uint32_t mesh = SCENE_NONE;
     const char *name = path_name(request->path);
     if (result == WHIT_OK)
-        result =
-            model_add_mesh(scene, name, parts, block->part_count, file->kind != IMPORT_OBJ, &mesh);
+        result = model_add_mesh(scene, name, block->parts, materials, block->part_count,
+                                file->kind != IMPORT_OBJ, &mesh);
     if (result == WHIT_OK)
         result = add_instance(scene, name, mesh, request->parent);
     key_table_finish(&palette.indices);
-    free(parts);
+    free(materials);
     return result;
 }
 

@@ -5,18 +5,13 @@
 #include "load/importer.h"
 #include "load/load.h"
 
-struct model_part {
-    const struct import_part *part;
-    const char *name;
-    uint32_t material; /* of the scene */
-};
-
 /* Adds one mesh of all parts, with a group for each; v is turned downwards. An array that only some
    parts have gets default values for the others; tangents are dropped unless all parts have them.
-   `colors_are_srgb`: colours are converted to linear. *index: the new mesh. */
+   `materials`: of the scene, by part. A part without a name has the mesh's. `colors_are_srgb`:
+   colours are converted to linear. *index: the new mesh. */
 WHIT_CHECK whit_result model_add_mesh(struct scene *scene, const char *name,
-                                      const struct model_part *parts, uint32_t part_count,
-                                      bool colors_are_srgb, uint32_t *index);
+                                      const struct part *parts, const uint32_t *materials,
+                                      uint32_t part_count, bool colors_are_srgb, uint32_t *index);
 
 /* Notes what the importer left out. */
 void model_note_counts(struct scene *scene, const char *path, const struct import_counts *counts);

@@ -10,43 +10,36 @@
 
 void part_finish(struct part *part)
 {
-    for (int i = 0; i < IMPORT_ARRAY_COUNT; i++)
+    for (int i = 0; i < PART_ARRAY_COUNT; i++)
         free(part->arrays[i]);
     free(part->name);
     free(part->material);
 }
 
-size_t part_count(const struct part *part, enum import_array array)
+uint32_t part_words(enum part_array array)
 {
-    return array == IMPORT_INDICES ? part->triangle_count : part->vertex_count;
+    static const uint32_t words[PART_ARRAY_COUNT] = {3, 3, 2, 2, 4, 4, 3};
+    return words[array];
 }
 
-void *part_add(struct part *part, enum import_array array)
+size_t part_bytes(const struct part *part, enum part_array array)
 {
-    part->arrays[array] = array_alloc(part_count(part, array), importer_array_words(array) * 4);
+    size_t count = array == PART_INDICES ? part->triangle_count : part->vertex_count;
+    return count * part_words(array) * 4;
+}
+
+void *part_add(struct part *part, enum part_array array)
+{
+    part->arrays[array] = array_alloc(part_bytes(part, array), 1);
     return part->arrays[array];
-}
-
-struct import_part part_view(const struct part *part)
-{
-    return (struct import_part){
-        .vertex_count = part->vertex_count,
-        .triangle_count = part->triangle_count,
-        .positions = part->arrays[IMPORT_POSITIONS],
-        .normals = part->arrays[IMPORT_NORMALS],
-        .uvs = {part->arrays[IMPORT_UV0], part->arrays[IMPORT_UV1]},
-        .colors = part->arrays[IMPORT_COLORS],
-        .tangents = part->arrays[IMPORT_TANGENTS],
-        .indices = part->arrays[IMPORT_INDICES],
-    };
 }
 
 /* --- normals ------------------------------------------------------------------------------- */
 
 static void triangle_cross(const struct part *part, uint32_t triangle, double out[3])
 {
-    const float *positions = part->arrays[IMPORT_POSITIONS];
-    const uint32_t *index = (const uint32_t *)part->arrays[IMPORT_INDICES] + (size_t)triangle * 3;
+    const float *positions = part->arrays[PART_POSITIONS];
+    const uint32_t *index = (const uint32_t *)part->arrays[PART_INDICES] + (size_t)triangle * 3;
     double a[3], b[3];
     for (int i = 0; i < 3; i++) {
         double origin = positions[(size_t)index[0] * 3 + (size_t)i];
@@ -68,7 +61,7 @@ static bool usable_normal(const float *n)
 /* Replaces zero normals, which assimp leaves where the file has none, by those of the faces. */
 static bool repair_normals(struct part *part)
 {
-    float *normals = part->arrays[IMPORT_NORMALS];
+    float *normals = part->arrays[PART_NORMALS];
     uint32_t vertex_count = part->vertex_count, bad = 0;
     uint8_t *is_bad = normals ? array_alloc_zeroed(vertex_count, 1) : NULL;
     if (!is_bad)
@@ -80,7 +73,7 @@ static bool repair_normals(struct part *part)
         is_bad[i] = 1;
         bad++;
     }
-    const uint32_t *indices = part->arrays[IMPORT_INDICES];
+    const uint32_t *indices = part->arrays[PART_INDICES];
     for (uint32_t i = 0; bad && i < part->triangle_count; i++) {
         double cross[3];
         triangle_cross(part, i, cross);
@@ -100,13 +93,13 @@ static bool repair_normals(struct part *part)
 /* Gives each corner of each triangle a vertex of its own. */
 static bool expand(struct part *part)
 {
-    const uint32_t *old = part->arrays[IMPORT_INDICES];
+    const uint32_t *old = part->arrays[PART_INDICES];
     uint32_t corners = part->triangle_count * 3;
     if (part->triangle_count > UINT32_MAX / 3)
         return false;
-    for (int array = 0; array < IMPORT_INDICES; array++) {
+    for (int array = 0; array < PART_INDICES; array++) {
         const uint32_t *from = part->arrays[array];
-        size_t words = importer_array_words((enum import_array)array);
+        size_t words = part_words((enum part_array)array);
         uint32_t *to = from ? array_alloc(corners, words * 4) : NULL;
         if (from && !to)
             return false;
@@ -115,7 +108,7 @@ static bool expand(struct part *part)
         free(part->arrays[array]);
         part->arrays[array] = to;
     }
-    uint32_t *indices = part->arrays[IMPORT_INDICES];
+    uint32_t *indices = part->arrays[PART_INDICES];
     for (uint32_t i = 0; i < corners; i++)
         indices[i] = i;
     part->vertex_count = corners;
@@ -127,7 +120,7 @@ static bool add_flat_normals(struct part *part)
 {
     if (!expand(part))
         return false;
-    float *normals = part_add(part, IMPORT_NORMALS);
+    float *normals = part_add(part, PART_NORMALS);
     for (uint32_t i = 0; normals && i < part->triangle_count; i++) {
         double cross[3];
         triangle_cross(part, i, cross);
@@ -161,9 +154,9 @@ static bool weld_init(struct weld *weld, const struct part *part)
     uint32_t count = part->vertex_count;
     size_t slots = 16;
     *weld = (struct weld){0};
-    for (int array = 0; array < IMPORT_INDICES; array++)
+    for (int array = 0; array < PART_INDICES; array++)
         if (part->arrays[array])
-            weld->stride += importer_array_words((enum import_array)array);
+            weld->stride += part_words((enum part_array)array);
     while (slots < (size_t)count * 2)
         slots *= 2;
     weld->mask = slots - 1;
@@ -177,8 +170,8 @@ static bool weld_init(struct weld *weld, const struct part *part)
 static void interleave(struct weld *weld, struct part *part, bool back)
 {
     uint32_t at = 0;
-    for (int array = 0; array < IMPORT_INDICES; array++) {
-        uint32_t words = importer_array_words((enum import_array)array);
+    for (int array = 0; array < PART_INDICES; array++) {
+        uint32_t words = part_words((enum part_array)array);
         uint32_t *plain = part->arrays[array];
         if (!plain)
             continue;
@@ -210,7 +203,7 @@ static uint32_t weld_find(struct weld *weld, uint32_t vertex, uint32_t unique_co
 static bool weld_part(struct part *part)
 {
     struct weld weld;
-    uint32_t *indices = part->arrays[IMPORT_INDICES], unique_count = 0;
+    uint32_t *indices = part->arrays[PART_INDICES], unique_count = 0;
     uint32_t *moved = array_alloc(part->vertex_count, sizeof *moved);
     bool ok = weld_init(&weld, part) && moved;
     if (ok) {
@@ -240,12 +233,12 @@ static bool join_parts(const struct part *parts, uint32_t count, struct part *ou
         out->vertex_count += parts[i].vertex_count;
         out->triangle_count += parts[i].triangle_count;
     }
-    float *positions = part_add(out, IMPORT_POSITIONS), *normals = part_add(out, IMPORT_NORMALS);
-    uint32_t *indices = part_add(out, IMPORT_INDICES), first = 0;
+    float *positions = part_add(out, PART_POSITIONS), *normals = part_add(out, PART_NORMALS);
+    uint32_t *indices = part_add(out, PART_INDICES), first = 0;
     for (uint32_t i = 0; positions && normals && indices && i < count; i++) {
-        const float *from = parts[i].arrays[IMPORT_POSITIONS];
-        const float *marks = parts[i].arrays[IMPORT_NORMALS];
-        const uint32_t *corners = parts[i].arrays[IMPORT_INDICES];
+        const float *from = parts[i].arrays[PART_POSITIONS];
+        const float *marks = parts[i].arrays[PART_NORMALS];
+        const uint32_t *corners = parts[i].arrays[PART_INDICES];
         for (size_t k = 0; k < (size_t)parts[i].vertex_count * 3; k++) {
             *positions++ =
                 from[k] + 0.0f; /* a negative zero becomes zero, since bits are compared */
@@ -260,8 +253,8 @@ static bool join_parts(const struct part *parts, uint32_t count, struct part *ou
 
 static void add_corner(const struct part *part, uint32_t triangle, uint32_t corner, double *sums)
 {
-    const float *positions = part->arrays[IMPORT_POSITIONS];
-    const uint32_t *index = (const uint32_t *)part->arrays[IMPORT_INDICES] + (size_t)triangle * 3;
+    const float *positions = part->arrays[PART_POSITIONS];
+    const uint32_t *index = (const uint32_t *)part->arrays[PART_INDICES] + (size_t)triangle * 3;
     const float *at = positions + (size_t)index[corner] * 3;
     double normal[3], edges[2][3];
     triangle_cross(part, triangle, normal);
@@ -278,13 +271,13 @@ bool parts_smooth(struct part *parts, uint32_t count)
     struct part joined = {0};
     bool ok = join_parts(parts, count, &joined);
     double *sums = ok ? array_alloc_zeroed(joined.vertex_count, 3 * sizeof *sums) : NULL;
-    const uint32_t *corners = joined.arrays[IMPORT_INDICES];
-    const float *marks = joined.arrays[IMPORT_NORMALS];
+    const uint32_t *corners = joined.arrays[PART_INDICES];
+    const float *marks = joined.arrays[PART_NORMALS];
     for (size_t i = 0; sums && i < (size_t)joined.triangle_count * 3; i++)
         add_corner(&joined, (uint32_t)(i / 3), (uint32_t)(i % 3), sums);
     for (uint32_t i = 0; sums && i < count; i++) {
-        float *normals = parts[i].arrays[IMPORT_NORMALS];
-        const uint32_t *indices = parts[i].arrays[IMPORT_INDICES];
+        float *normals = parts[i].arrays[PART_NORMALS];
+        const uint32_t *indices = parts[i].arrays[PART_INDICES];
         for (size_t k = 0; k < (size_t)parts[i].triangle_count * 3; k++, corners++) {
             double *sum = sums + (size_t)*corners * 3, length = double3_length(sum);
             for (size_t axis = 0; marks[(size_t)*corners * 3] > 0 && axis < 3; axis++)
@@ -304,9 +297,9 @@ bool parts_complete(struct part *parts, uint32_t count, bool corners)
 {
     bool shaded = false;
     for (uint32_t i = 0; i < count; i++)
-        shaded |= parts[i].arrays[IMPORT_NORMALS] != NULL;
+        shaded |= parts[i].arrays[PART_NORMALS] != NULL;
     for (uint32_t i = 0; i < count; i++) {
-        bool flat = shaded && !parts[i].arrays[IMPORT_NORMALS];
+        bool flat = shaded && !parts[i].arrays[PART_NORMALS];
         if (flat ? !add_flat_normals(&parts[i]) : !repair_normals(&parts[i]))
             return false;
         if ((corners || flat) && !weld_part(&parts[i]))

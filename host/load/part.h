@@ -1,23 +1,39 @@
-/* A part: triangles of one material, under construction. Used in the importer's child, and for glTF
-   in whit's own process. */
+/* A part: triangles of one group and material. The importer's child makes them, and writes them
+   into its reply (importer.h); for glTF whit's own process does. */
 #ifndef LOAD_PART_H
 #define LOAD_PART_H
 
-#include "load/importer.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum part_array {
+    PART_POSITIONS,
+    PART_NORMALS,
+    PART_UV0,
+    PART_UV1,
+    PART_COLORS,
+    PART_TANGENTS,
+    PART_INDICES,
+    PART_ARRAY_COUNT
+};
 
 struct part {
     uint32_t vertex_count, triangle_count;
-    void *arrays[IMPORT_ARRAY_COUNT]; /* malloc'ed, or NULL */
-    char *name, *material;            /* malloc'ed, or NULL */
+    /* 4-byte words: floats, per vertex, of texture coordinates v upwards as assimp has it; indices
+       per triangle. NULL: there are none. */
+    void *arrays[PART_ARRAY_COUNT];
+    char *name, *material; /* names; may be NULL */
 };
 
+/* Frees all that `part` refers to, which is malloc'ed; not for parts in a reply. */
 void part_finish(struct part *part);
-/* Number of elements of an array: triangles for indices, else vertices. */
-size_t part_count(const struct part *part, enum import_array array);
+/* Number of words of an array per vertex, of indices per triangle. */
+uint32_t part_words(enum part_array array);
+/* Size of an array of the part in bytes. */
+size_t part_bytes(const struct part *part, enum part_array array);
 /* Allocates an array, which the part owns; NULL when memory runs out. */
-void *part_add(struct part *part, enum import_array array);
-/* A read-only view of the part, without its names. */
-struct import_part part_view(const struct part *part);
+void *part_add(struct part *part, enum part_array array);
 /* Replaces normals with x > 0, each of which stands for a smoothing group (obj_mark_smooth_groups),
    by the normals of the surface of that group: in each point the sum of the normals of its
    triangles, weighted by their angles there (Thuermer and Wuethrich 1998, Computing vertex normals
