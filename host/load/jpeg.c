@@ -23,7 +23,8 @@ struct job {
     jmp_buf leave;
     const uint8_t *data;
     size_t size_bytes;
-    struct picture picture;
+    uint64_t pixels_max;
+    struct picture picture, refused; /* refused: its sides, if it has too many pixels */
     const char *reason;
     whit_result result;
 };
@@ -91,8 +92,8 @@ static void read_header(struct job *job)
     info->progress = &job->progress;
     jpeg_mem_src(info, job->data, (unsigned long)job->size_bytes);
     (void)jpeg_read_header(info, TRUE); /* fails through `leave` if there is none */
-    const char *refused =
-        picture_why_refused(info->image_width, info->image_height, job->size_bytes);
+    const char *refused = picture_why_refused(info->image_width, info->image_height,
+                                              job->size_bytes, job->pixels_max, &job->refused);
     if (refused)
         leave(job, WHIT_ERROR_INPUT, refused);
     bool inks = info->jpeg_color_space == JCS_CMYK || info->jpeg_color_space == JCS_YCCK;
@@ -133,8 +134,8 @@ static void read_rows(struct job *job)
     (void)jpeg_finish_decompress(info);
 }
 
-whit_result jpeg_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
-                        const char **reason)
+whit_result jpeg_decode(const uint8_t *data, size_t size_bytes, uint64_t pixels_max,
+                        struct picture *out, const char **reason)
 {
     struct job *job = array_alloc_zeroed(1, sizeof *job);
     *out = (struct picture){0};
@@ -143,15 +144,15 @@ whit_result jpeg_decode(const uint8_t *data, size_t size_bytes, struct picture *
         return WHIT_ERROR_MEMORY;
     job->data = data;
     job->size_bytes = size_bytes;
+    job->pixels_max = pixels_max;
     begin(job);
     if (setjmp(job->leave) == 0) {
         read_header(job);
         read_rows(job);
     }
     whit_result result = job->result;
-    if (result == WHIT_OK)
-        *out = job->picture;
-    else
+    *out = result == WHIT_OK ? job->picture : job->refused;
+    if (result != WHIT_OK)
         picture_finish(&job->picture);
     *reason = job->reason;
     jpeg_destroy_decompress(&job->info);

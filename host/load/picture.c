@@ -64,21 +64,23 @@ static void *take_block(void *block, size_t bytes)
 #define PIXELS_PER_BYTE  ((uint64_t)8 * 1032)
 #define BLOCK_BYTES_FREE ((uint64_t)1 << 18) /* tables of decoders */
 
-static uint64_t pixels_max(size_t size_bytes)
-{
-    return PIXELS_FREE + PIXELS_PER_BYTE * size_bytes;
-}
-
-const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_bytes)
+const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_bytes,
+                                uint64_t pixels_max, struct picture *sides)
 {
     uint64_t pixels = (uint64_t)width * height;
+    *sides = (struct picture){0};
     if (pixels == 0)
         return "it is empty";
     if (pixels > PIXELS_MAX)
         return "it has more than 2^26 pixels";
     if (width > SIDE_MAX || height > SIDE_MAX)
         return "a side has more than 16384 pixels";
-    return pixels > pixels_max(size_bytes) ? "its header tells of more than there is in it" : NULL;
+    if (pixels > PIXELS_FREE + PIXELS_PER_BYTE * size_bytes)
+        return "its header tells of more than there is in it";
+    if (pixels <= pixels_max)
+        return NULL;
+    *sides = (struct picture){.width = width, .height = height};
+    return "it has more pixels than the memory limit allows";
 }
 
 /* stb_image's reason for a failure; "damaged" if it quotes unprintable bytes of the file. */
@@ -92,55 +94,23 @@ static const char *failure_reason(void)
     return reason && *reason ? reason : "damaged";
 }
 
-/* Reads a JPEG's size from its first frame header, which has a marker from 0xffc0 to 0xffcf,
-   without 0xffc4, 0xffc8 and 0xffcc. */
-static void jpeg_sides(const uint8_t *data, size_t size_bytes, uint32_t *width, uint32_t *height)
-{
-    for (size_t at = 2; at + 9 <= size_bytes && data[at] == 0xff;
-         at += 2 + ((size_t)data[at + 2] << 8 | data[at + 3])) {
-        uint8_t marker = data[at + 1];
-        if (marker < 0xc0 || marker > 0xcf || marker == 0xc4 || marker == 0xc8 || marker == 0xcc)
-            continue;
-        *height = (uint32_t)data[at + 5] << 8 | data[at + 6];
-        *width = (uint32_t)data[at + 7] << 8 | data[at + 8];
-        return;
-    }
-}
-
-/* Width and height in the header; 0 where it does not state them where expected. */
-static void picture_sides(const uint8_t *data, size_t size_bytes, uint32_t *width, uint32_t *height)
-{
-    int sides[2] = {0, 0}, channels;
-    *width = *height = 0;
-    if (size_bytes > INT_MAX)
-        return;
-    if (jpeg_is(data, size_bytes)) {
-        jpeg_sides(data, size_bytes, width, height);
-        return;
-    }
-    block_bytes_max = BLOCK_BYTES_FREE;
-    if (stbi_info_from_memory(data, (int)size_bytes, &sides[0], &sides[1], &channels)) {
-        *width = (uint32_t)sides[0];
-        *height = (uint32_t)sides[1];
-    }
-}
-
-whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
-                           const char **reason)
+whit_result picture_decode(const uint8_t *data, size_t size_bytes, uint64_t pixels_max,
+                           struct picture *out, const char **reason)
 {
     *out = (struct picture){0};
     *reason = "it is not a picture that whit reads (PNG, JPEG, BMP, TGA, GIF)";
     if (size_bytes > INT_MAX)
         return WHIT_ERROR_INPUT;
     if (jpeg_is(data, size_bytes))
-        return jpeg_decode(data, size_bytes, out, reason);
+        return jpeg_decode(data, size_bytes, pixels_max, out, reason);
     int size = (int)size_bytes, width, height, channels;
     block_bytes_max = BLOCK_BYTES_FREE;
     lacks_memory = over_limit = false;
     if (!stbi_info_from_memory(data, size, &width, &height, &channels))
         return WHIT_ERROR_INPUT;
-    const char *refused = picture_why_refused((uint32_t)(width > 0 ? width : 0),
-                                              (uint32_t)(height > 0 ? height : 0), size_bytes);
+    const char *refused =
+        picture_why_refused((uint32_t)(width > 0 ? width : 0), (uint32_t)(height > 0 ? height : 0),
+                            size_bytes, pixels_max, out);
     if (refused) {
         *reason = refused;
         return WHIT_ERROR_INPUT;
@@ -176,12 +146,8 @@ static whit_result decode_file(void *user, void *to, child_write write,
     const struct file *file = user;
     struct picture picture;
     const char *reason = "";
-    picture_sides(file->data, file->size_bytes, &answer->numbers[0], &answer->numbers[1]);
-    uint32_t width = answer->numbers[0], height = answer->numbers[1];
-    if ((uint64_t)width * height > file->pixels_max &&
-        !picture_why_refused(width, height, file->size_bytes))
-        return WHIT_ERROR_INPUT;
-    whit_result result = picture_decode(file->data, file->size_bytes, &picture, &reason);
+    whit_result result =
+        picture_decode(file->data, file->size_bytes, file->pixels_max, &picture, &reason);
     snprintf(answer->reason, sizeof answer->reason, "%s", reason);
     answer->numbers[0] = picture.width;
     answer->numbers[1] = picture.height;

@@ -20,19 +20,21 @@ struct picture {
 };
 
 /* Runs picture_decode() in a child process, whose reply becomes `rgba`. On failure `reason` is
-   filled and nothing is logged, as by foreign_ask(). If the header states more than `pixels_max`
-   pixels, nothing is decoded: the result is WHIT_ERROR_INPUT, and `out` has width and height. */
+   filled and nothing is logged, as by foreign_ask(). */
 WHIT_CHECK whit_result picture_read(const whit_log *log, const struct foreign_params *params,
                                     uint64_t pixels_max, const uint8_t *data, size_t size_bytes,
                                     struct picture *out, char reason[FOREIGN_REASON_BYTES]);
 
 /* Decodes a PNG, JPEG, BMP, TGA or GIF (its first frame) into `rgba`. A file whose header states
    more pixels than its bytes can hold in any of these formats is refused before memory is
-   allocated. WHIT_ERROR_INPUT fills `reason`; nothing is logged. */
-WHIT_CHECK whit_result picture_decode(const uint8_t *data, size_t size_bytes, struct picture *out,
-                                      const char **reason);
-/* Why a file of `size_bytes` whose header states this size is refused; NULL: it is not refused. */
-const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_bytes);
+   allocated. WHIT_ERROR_INPUT fills `reason`; nothing is logged. If the header states more than
+   `pixels_max` pixels, nothing is decoded either, and `out` has width and height. */
+WHIT_CHECK whit_result picture_decode(const uint8_t *data, size_t size_bytes, uint64_t pixels_max,
+                                      struct picture *out, const char **reason);
+/* Why a file of `size_bytes` whose header states this size is refused; NULL: it is not refused.
+   `sides` gets the size if only the limit is exceeded. */
+const char *picture_why_refused(uint32_t width, uint32_t height, size_t size_bytes,
+                                uint64_t pixels_max, struct picture *sides);
 /* Halves the picture with a box filter until no side exceeds `side_max`. False: memory ran out. */
 bool picture_shrink(struct picture *picture, uint32_t side_max);
 void picture_finish(struct picture *picture);

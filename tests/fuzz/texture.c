@@ -10,7 +10,7 @@ static void decode(const uint8_t *data, size_t size_bytes)
 {
     struct picture picture;
     const char *reason = NULL;
-    whit_result result = picture_decode(data, size_bytes, &picture, &reason);
+    whit_result result = picture_decode(data, size_bytes, UINT64_MAX, &picture, &reason);
     fuzz_check(result == WHIT_OK || (result == WHIT_ERROR_INPUT && reason && *reason),
                "the result is %d", (int)result);
     /* No format makes more of its bytes than PNG can. */

@@ -119,7 +119,8 @@ static void check(struct bytes bytes, int channels, int off_max)
     struct picture picture;
     const char *reason = "";
     int off = 0;
-    assert_int_equal(picture_decode(bytes.data, bytes.count, &picture, &reason), WHIT_OK);
+    assert_int_equal(picture_decode(bytes.data, bytes.count, UINT64_MAX, &picture, &reason),
+                     WHIT_OK);
     assert_true(picture.width == WIDTH && picture.height == HEIGHT);
     for (int i = 0; i < WIDTH * HEIGHT * 4; i++) {
         int wanted = expected(i / 4 % WIDTH, i / 4 / WIDTH, i % 4, channels);
@@ -151,7 +152,7 @@ static bool decodes(const uint8_t *data, size_t size_bytes, const char **reason)
     uint8_t *exact = malloc(size_bytes ? size_bytes : 1); /* sanitizers see its end */
     assert_non_null(exact);
     memcpy(exact, data, size_bytes);
-    whit_result result = picture_decode(exact, size_bytes, &picture, reason);
+    whit_result result = picture_decode(exact, size_bytes, UINT64_MAX, &picture, reason);
     free(exact);
     assert_true(result == WHIT_OK || (result == WHIT_ERROR_INPUT && **reason));
     assert_int_equal(result == WHIT_OK, picture.rgba != NULL);
@@ -232,6 +233,16 @@ TEST(greedy_jpegs_are_refused)
     check_reason(&longer, "too many scans");
 }
 
+TEST(jpegs_over_the_limit_tell_their_size_alone)
+{
+    own_bytes file = write_stb(95);
+    struct picture picture;
+    const char *reason;
+    assert_int_equal(picture_decode(file.data, file.count, WIDTH * HEIGHT - 1, &picture, &reason),
+                     WHIT_ERROR_INPUT);
+    assert_true(picture.width == WIDTH && picture.height == HEIGHT && !picture.rgba);
+}
+
 static size_t largest_block;
 
 WRAPPED(void *, realloc, void *block, size_t size_bytes)
@@ -276,12 +287,12 @@ TEST_IN(damaged_textures_are_named, fixture_begin, fixture_end)
 /* Wrapped at link time: replacements of decoders, and a system that refuses the sandbox. */
 static bool decoders_connect, sandbox_is_refused;
 
-WRAPPED(whit_result, jpeg_decode, const uint8_t *data, size_t size_bytes, struct picture *out,
-        const char **reason)
+WRAPPED(whit_result, jpeg_decode, const uint8_t *data, size_t size_bytes, uint64_t pixels_max,
+        struct picture *out, const char **reason)
 {
     if (decoders_connect && socket(AF_INET, SOCK_STREAM, 0) >= 0)
         *reason = "it is out";
-    return __real_jpeg_decode(data, size_bytes, out, reason);
+    return __real_jpeg_decode(data, size_bytes, pixels_max, out, reason);
 }
 
 WRAPPED(whit_result, image_decode, const struct image_source *source, struct image *image)
