@@ -266,8 +266,7 @@ void exr_rows_add(struct exr_writer *writer, const struct image *rows)
     writer->y += rows->height;
 }
 
-struct exr_writer *exr_rows_begin(const struct image_target *target, const struct image *shape,
-                                  bool direct)
+struct exr_writer *exr_rows_begin(const struct image_target *target, const struct image *shape)
 {
     struct exr_writer *writer = calloc(1, sizeof *writer);
     if (!writer) {
@@ -276,7 +275,7 @@ struct exr_writer *exr_rows_begin(const struct image_target *target, const struc
     }
     writer->target = target;
     writer->encode = (exr_encode_pipeline_t)EXR_ENCODE_PIPELINE_INITIALIZER;
-    writer->file.stream = direct ? target->stream : NULL;
+    writer->file.stream = fseeko(target->stream, 0, SEEK_CUR) == 0 ? target->stream : NULL;
     exr_context_initializer_t init = callbacks(&writer->file);
     init.write_fn = on_write;
     writer->code = exr_start_write(&writer->context, target->path, EXR_WRITE_FILE_DIRECTLY, &init);
@@ -301,15 +300,6 @@ whit_result exr_rows_end(struct exr_writer *writer)
     free(file->data);
     free(writer);
     return result;
-}
-
-whit_result exr_write(const struct image_target *target, const struct image *image)
-{
-    struct exr_writer *writer = exr_rows_begin(target, image, false);
-    if (!writer)
-        return WHIT_ERROR_MEMORY;
-    exr_rows_add(writer, image);
-    return exr_rows_end(writer);
 }
 
 /* The channels that are read from a file, in the order of the image's. */

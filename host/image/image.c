@@ -11,8 +11,6 @@
 
 enum { KEY_MAX = 79, LAYER_NAME_MAX = 200 };
 
-enum format { FORMAT_UNKNOWN, FORMAT_PNG, FORMAT_EXR, FORMAT_PFM, FORMAT_HDR };
-
 whit_result image_init(struct image *image, uint32_t width, uint32_t height, uint32_t channels,
                        bool integers)
 {
@@ -93,23 +91,20 @@ float image_linear_from_srgb(float srgb)
     return (float)linear_from_srgb((double)srgb);
 }
 
-static enum format format_of_path(const char *path)
+enum image_format image_format_of(const char *path)
 {
     char extension[8];
     path_extension(path, extension, sizeof extension);
-    if (strcmp(extension, "png") == 0)
-        return FORMAT_PNG;
-    if (strcmp(extension, "exr") == 0)
-        return FORMAT_EXR;
-    if (strcmp(extension, "pfm") == 0)
-        return FORMAT_PFM;
-    return FORMAT_UNKNOWN;
+    return strcmp(extension, "png") == 0   ? IMAGE_PNG
+           : strcmp(extension, "exr") == 0 ? IMAGE_EXR
+           : strcmp(extension, "pfm") == 0 ? IMAGE_PFM
+                                           : IMAGE_UNKNOWN;
 }
 
 bool image_format_known(const char *path, bool integers)
 {
-    enum format format = format_of_path(path);
-    return format == FORMAT_EXR || (format != FORMAT_UNKNOWN && !integers);
+    enum image_format format = image_format_of(path);
+    return format == IMAGE_EXR || (format != IMAGE_UNKNOWN && !integers);
 }
 
 whit_result image_check_savable(const whit_log *log, const struct image *image, const char *path)
@@ -152,7 +147,7 @@ static void warn_of_nonfinite(const whit_log *log, const struct image *image, co
     if (count)
         log_warning(log, "%s: %llu of %llu pixels are not finite%s", path,
                     (unsigned long long)count, (unsigned long long)image->width * image->height,
-                    format_of_path(path) == FORMAT_PNG ? " and shown as magenta" : "");
+                    image_format_of(path) == IMAGE_PNG ? " and shown as magenta" : "");
 }
 
 static bool is_new_layer(const struct image_layer *layers, uint32_t index)
@@ -167,7 +162,7 @@ static bool is_new_layer(const struct image_layer *layers, uint32_t index)
 static whit_result check_layers(const whit_log *log, const struct image *image,
                                 const struct image_layer *layers, uint32_t count, const char *path)
 {
-    bool fit = count <= IMAGE_LAYERS_MAX && (count == 0 || format_of_path(path) == FORMAT_EXR);
+    bool fit = count <= IMAGE_LAYERS_MAX && (count == 0 || image_format_of(path) == IMAGE_EXR);
     for (uint32_t i = 0; fit && i < count; ++i) {
         const char *name = layers[i].name;
         size_t length = strcspn(name, "."); /* a dot stands before the channel */
@@ -218,7 +213,7 @@ static bool is_reserved(const char *key)
 whit_result image_check_texts(const whit_log *log, const char *path, const whit_text *texts,
                               uint32_t count)
 {
-    bool exr = format_of_path(path) == FORMAT_EXR;
+    bool exr = image_format_of(path) == IMAGE_EXR;
     for (uint32_t i = 0; texts && i < count; ++i) {
         if (exr && is_reserved(texts[i].key)) {
             log_error(log, "%s: a text `%s`: .exr has this name for something else", path,
@@ -251,29 +246,13 @@ whit_result image_save(const whit_log *log, const struct image *image,
     if (result != WHIT_OK)
         return result;
     warn_of_nonfinite(log, image, path);
-    struct file_write file;
-    result = file_write_begin(log, path, &file);
-    if (result != WHIT_OK)
-        return result;
     struct image_target target = {.log = log,
                                   .path = path,
-                                  .stream = file.stream,
                                   .texts = texts,
                                   .text_count = texts ? text_count : 0,
                                   .layers = layers,
                                   .layer_count = layer_count};
-    switch (format_of_path(path)) {
-    case FORMAT_EXR:
-        result = exr_write(&target, image);
-        break;
-    case FORMAT_PFM:
-        result = pfm_write(&target, image);
-        break;
-    default:
-        result = png_write(&target, image);
-        break;
-    }
-    return file_write_end(log, &file, result);
+    return image_write_whole(&target, image);
 }
 
 whit_result image_encode_png(const whit_log *log, const struct image *image, const whit_text *texts,
@@ -308,49 +287,35 @@ whit_result image_encode_png(const whit_log *log, const struct image *image, con
 }
 
 /* Tells the format by the content, since a file's extension may be wrong. */
-static enum format format_of_data(const uint8_t *data, size_t size_bytes)
-{
-    static const uint8_t png[4] = {0x89, 'P', 'N', 'G'}, exr[4] = {0x76, 0x2f, 0x31, 0x01};
-    if (size_bytes < 4)
-        return FORMAT_UNKNOWN;
-    if (memcmp(data, png, 4) == 0)
-        return FORMAT_PNG;
-    if (memcmp(data, exr, 4) == 0)
-        return FORMAT_EXR;
-    if (data[0] == 'P' && (data[1] == 'F' || data[1] == 'f'))
-        return FORMAT_PFM;
-    return data[0] == '#' && data[1] == '?' ? FORMAT_HDR : FORMAT_UNKNOWN;
-}
+static const struct decoder {
+    const char *magic;
+    whit_result (*load)(const struct image_source *source, struct image *image);
+    whit_result (*load_texts)(const struct image_source *source, struct text_list *list);
+} decoders[] = {
+    {"\x89PNG", png_load, png_load_texts},
+    {"\x76\x2f\x31\x01", exr_load, exr_load_texts},
+    {"PF", pfm_load, NULL},
+    {"Pf", pfm_load, NULL},
+    {"#?", hdr_load, NULL},
+};
 
-static whit_result unknown_format(const struct image_source *source)
+/* NULL: the format is unknown, which was logged. */
+static const struct decoder *find_decoder(const struct image_source *source)
 {
+    for (size_t i = 0; source->size_bytes >= 4 && i < sizeof decoders / sizeof *decoders; ++i)
+        if (memcmp(source->data, decoders[i].magic, strlen(decoders[i].magic)) == 0)
+            return &decoders[i];
     log_error(source->log, "%s: %s", source->path,
               source->size_bytes ? "not a PNG, EXR, PFM or HDR picture" : "the file is empty");
-    return WHIT_ERROR_INPUT;
+    return NULL;
 }
 
 /* Runs in the child process of image_reply.c. */
 whit_result image_decode(const struct image_source *source, struct image *image)
 {
     *image = (struct image){0};
-    whit_result result = WHIT_OK;
-    switch (format_of_data(source->data, source->size_bytes)) {
-    case FORMAT_PNG:
-        result = png_load(source, image);
-        break;
-    case FORMAT_EXR:
-        result = exr_load(source, image);
-        break;
-    case FORMAT_PFM:
-        result = pfm_load(source, image);
-        break;
-    case FORMAT_HDR:
-        result = hdr_load(source, image);
-        break;
-    case FORMAT_UNKNOWN:
-        result = unknown_format(source);
-        break;
-    }
+    const struct decoder *decoder = find_decoder(source);
+    whit_result result = decoder ? decoder->load(source, image) : WHIT_ERROR_INPUT;
     if (result != WHIT_OK)
         image_finish(image);
     return result;
@@ -358,18 +323,10 @@ whit_result image_decode(const struct image_source *source, struct image *image)
 
 whit_result image_decode_texts(const struct image_source *source, struct text_list *list)
 {
-    switch (format_of_data(source->data, source->size_bytes)) {
-    case FORMAT_PNG:
-        return png_load_texts(source, list);
-    case FORMAT_EXR:
-        return exr_load_texts(source, list);
-    case FORMAT_PFM:
-    case FORMAT_HDR:
-        return WHIT_OK;
-    case FORMAT_UNKNOWN:
-        break;
-    }
-    return unknown_format(source);
+    const struct decoder *decoder = find_decoder(source);
+    if (!decoder)
+        return WHIT_ERROR_INPUT;
+    return decoder->load_texts ? decoder->load_texts(source, list) : WHIT_OK;
 }
 
 bool text_list_add(struct text_list *list, const char *key, const char *value)

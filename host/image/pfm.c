@@ -59,12 +59,6 @@ whit_result pfm_put_rows(const struct image_target *target, const struct image *
     return WHIT_OK;
 }
 
-whit_result pfm_write(const struct image_target *target, const struct image *image)
-{
-    (void)pfm_put_header(target, image);
-    return pfm_put_rows(target, image);
-}
-
 /* Reads the next word of the header, and skips the one white space behind it. */
 static bool next_word(const struct image_source *source, size_t *at, char *word, size_t word_bytes)
 {

@@ -106,9 +106,8 @@ static void finish(struct job *job)
     free(job->texts);
 }
 
-/* Channels to write. A grey picture with non-finite pixels is written as RGB, since those are
-   magenta. */
-static uint32_t written_channels(const struct image *image)
+/* A grey picture with non-finite pixels is written as RGB, since those are magenta. */
+uint32_t png_channels(const struct image *image)
 {
     size_t pixel_count = (size_t)image->width * image->height;
     for (size_t i = 0; image->channels == 1 && i < pixel_count; ++i) {
@@ -200,14 +199,15 @@ static void try_head(struct png_writer *writer, const struct image_target *targe
         write_head(writer, target, shape);
 }
 
-struct png_writer *png_rows_begin(const struct image_target *target, const struct image *shape)
+struct png_writer *png_rows_begin(const struct image_target *target, const struct image *shape,
+                                  uint32_t channels)
 {
     struct png_writer *writer = calloc(1, sizeof *writer);
     if (!writer)
         goto no_memory;
     struct job *job = &writer->job;
     *job = (struct job){.log = target->log, .path = target->path, .stream = target->stream};
-    writer->channels = shape->channels;
+    writer->channels = channels;
     display_encoder_init(&writer->encoder);
     job->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
     job->info = job->png ? png_create_info_struct(job->png) : NULL;
@@ -241,9 +241,7 @@ whit_result png_rows_end(struct png_writer *writer, bool whole)
 
 whit_result png_write(const struct image_target *target, const struct image *image)
 {
-    struct image shape = *image;
-    shape.channels = written_channels(image);
-    struct png_writer *writer = png_rows_begin(target, &shape);
+    struct png_writer *writer = png_rows_begin(target, image, png_channels(image));
     if (!writer)
         return WHIT_ERROR_MEMORY;
     png_rows_add(writer, image);

@@ -1,10 +1,9 @@
-/* Writes pictures in strips of rows, so that no more than one strip is in memory. */
+/* Writes pictures, whole or in strips of rows, so that no more than one strip is in memory. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
-#include "base/path.h"
 #include "image/formats.h"
 #include "image/rows.h"
 
@@ -26,46 +25,39 @@ static whit_result fail(struct image_rows *rows)
     return WHIT_ERROR_OUTPUT;
 }
 
-static whit_result begin(struct image_rows *rows)
+/* Begins the writer of the format. `channels`: of a PNG. */
+static whit_result begin(struct image_rows *rows, uint32_t channels)
 {
-    char extension[8];
-    path_extension(rows->target.path, extension, sizeof extension);
-    if (fseeko(rows->target.stream, 0, SEEK_CUR) != 0)
-        return fail(rows);
-    if (strcmp(extension, "pfm") == 0)
+    enum image_format format = image_format_of(rows->target.path);
+    if (format == IMAGE_PFM)
         rows->header_bytes = pfm_put_header(&rows->target, &rows->shape);
-    else if (strcmp(extension, "exr") == 0)
-        rows->exr = exr_rows_begin(&rows->target, &rows->shape, true);
+    else if (format == IMAGE_EXR)
+        rows->exr = exr_rows_begin(&rows->target, &rows->shape);
     else
-        rows->png = png_rows_begin(&rows->target, &rows->shape);
+        rows->png = png_rows_begin(&rows->target, &rows->shape, channels);
     return rows->header_bytes || rows->exr || rows->png ? WHIT_OK : WHIT_ERROR_MEMORY;
 }
 
-whit_result image_rows_begin(const whit_log *log, const char *path, const struct image *shape,
-                             const whit_text *texts, uint32_t text_count, struct image_rows **out)
+/* Opens the file. `whole`: all rows come at once, so that a pipe will do. */
+static whit_result open_rows(const struct image_target *target, const struct image *shape,
+                             uint32_t channels, bool whole, struct image_rows **out)
 {
+    struct image_rows *rows = calloc(1, sizeof *rows);
     *out = NULL;
-    whit_result result = image_check_savable(log, shape, path);
-    if (result == WHIT_OK)
-        result = image_check_texts(log, path, texts, text_count);
-    struct image_rows *rows = result == WHIT_OK ? calloc(1, sizeof *rows) : NULL;
-    if (result == WHIT_OK && !rows) {
-        log_error(log, "%s: out of memory", path);
-        result = WHIT_ERROR_MEMORY;
+    if (!rows) {
+        log_error(target->log, "%s: out of memory", target->path);
+        return WHIT_ERROR_MEMORY;
     }
-    if (result == WHIT_OK)
-        result = file_write_begin(log, path, &rows->file);
+    whit_result result = file_write_begin(target->log, target->path, &rows->file);
     if (result != WHIT_OK) {
         free(rows);
         return result;
     }
     rows->shape = *shape;
-    rows->target = (struct image_target){.log = log,
-                                         .path = path,
-                                         .stream = rows->file.stream,
-                                         .texts = texts,
-                                         .text_count = text_count};
-    result = begin(rows);
+    rows->target = *target;
+    rows->target.stream = rows->file.stream;
+    bool seeks = whole || fseeko(rows->file.stream, 0, SEEK_CUR) == 0;
+    result = seeks ? begin(rows, channels) : fail(rows);
     if (result == WHIT_OK)
         *out = rows;
     else
@@ -73,11 +65,24 @@ whit_result image_rows_begin(const whit_log *log, const char *path, const struct
     return result;
 }
 
+whit_result image_rows_begin(const whit_log *log, const char *path, const struct image *shape,
+                             const whit_text *texts, uint32_t text_count, struct image_rows **out)
+{
+    const struct image_target target = {
+        .log = log, .path = path, .texts = texts, .text_count = text_count};
+    *out = NULL;
+    whit_result result = image_check_savable(log, shape, path);
+    if (result == WHIT_OK)
+        result = image_check_texts(log, path, texts, text_count);
+    return result == WHIT_OK ? open_rows(&target, shape, shape->channels, false, out) : result;
+}
+
 static whit_result put_pfm_rows(struct image_rows *rows, const struct image *strip)
 {
     uint64_t below = rows->shape.height - rows->y - strip->height;
     uint64_t row_bytes = (uint64_t)strip->width * (strip->channels == 1 ? 1 : 3) * sizeof(float);
-    if (fseeko(rows->target.stream, (off_t)(rows->header_bytes + below * row_bytes), SEEK_SET))
+    if (strip->height < rows->shape.height && /* a whole picture may go into a pipe */
+        fseeko(rows->target.stream, (off_t)(rows->header_bytes + below * row_bytes), SEEK_SET))
         return fail(rows);
     return pfm_put_rows(&rows->target, strip);
 }
@@ -134,4 +139,16 @@ void image_rows_abandon(struct image_rows *rows)
     (void)ignored;
     file_write_abandon(&rows->file);
     free(rows);
+}
+
+whit_result image_write_whole(const struct image_target *target, const struct image *image)
+{
+    struct image_rows *rows;
+    uint32_t channels = image->pixels ? png_channels(image) : image->channels;
+    whit_result result = open_rows(target, image, channels, true, &rows);
+    if (result != WHIT_OK)
+        return result;
+    result = image_rows_add(rows, image);
+    whit_result end_result = image_rows_commit(rows);
+    return result == WHIT_OK ? end_result : result;
 }

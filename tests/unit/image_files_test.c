@@ -454,6 +454,29 @@ TEST_IN(exr_kinds_are_read, folder_begin, folder_end)
     assert_int_equal(messages.errors, 0);
 }
 
+/* Of what goes into a pipe, an EXR is kept in memory until its end. */
+TEST_IN(pipes_get_the_bytes_of_files, folder_begin, folder_end)
+{
+    static const char *const names[] = {"a.png", "a.exr", "a.pfm"};
+    own_image image = fixture_floats(30, 40, 3);
+    for (int i = 0; i < 3; ++i) {
+        own_memory uint8_t *data = NULL, *piped = NULL;
+        size_t size_bytes;
+        char *path = in_folder(names[i]);
+        assert_int_equal(image_save(&warnings_log, &image, NULL, 0, path, NULL, 0), WHIT_OK);
+        assert_int_equal(file_read(NULL, NULL, path, 0, &data, &size_bytes), WHIT_OK);
+        piped = malloc(size_bytes + 1);
+        assert_true(piped && unlink(path) == 0 && mkfifo(path, 0666) == 0);
+        int pipe = open(path, O_RDWR); /* holds the 64 KiB that a pipe has room for */
+        assert_true(pipe >= 0);
+        assert_int_equal(image_save(&warnings_log, &image, NULL, 0, path, NULL, 0), WHIT_OK);
+        assert_int_equal(fcntl(pipe, F_SETFL, O_NONBLOCK), 0);
+        assert_int_equal(read(pipe, piped, size_bytes + 1), size_bytes);
+        assert_memory_equal(piped, data, size_bytes);
+        close(pipe);
+    }
+}
+
 TEST_IN(hdr_rows_of_all_kinds, folder_begin, folder_end)
 {
     char *path = in_folder("a.hdr");
