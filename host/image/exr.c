@@ -435,50 +435,31 @@ static exr_result_t decode_chunk(struct decoder *decoder, const exr_chunk_info_t
     return code == EXR_ERR_SUCCESS ? exr_decoding_run(decoder->context, 0, pipeline) : code;
 }
 
-static exr_result_t decode_scanlines(struct decoder *decoder, int32_t top)
-{
-    int32_t chunk_rows = 0;
-    exr_result_t code = exr_get_scanlines_per_chunk(decoder->context, 0, &chunk_rows);
-    if (code == EXR_ERR_SUCCESS && chunk_rows < 1)
-        return EXR_ERR_CORRUPT_CHUNK;
-    for (uint32_t y = 0; y < decoder->image->height && code == EXR_ERR_SUCCESS;
-         y += (uint32_t)chunk_rows) {
-        exr_chunk_info_t chunk;
-        code = exr_read_scanline_chunk_info(decoder->context, 0, top + (int)y, &chunk);
-        if (code == EXR_ERR_SUCCESS)
-            code = decode_chunk(decoder, &chunk, 0, y);
-    }
-    return code;
-}
-
-static exr_result_t decode_tiles(struct decoder *decoder)
-{
-    int32_t width = 0, height = 0;
-    exr_result_t code = exr_get_tile_sizes(decoder->context, 0, 0, 0, &width, &height);
-    if (code == EXR_ERR_SUCCESS && (width < 1 || height < 1))
-        return EXR_ERR_CORRUPT_CHUNK;
-    uint32_t step_x = (uint32_t)width, step_y = (uint32_t)height;
-    for (uint32_t y = 0; y < decoder->image->height && code == EXR_ERR_SUCCESS; y += step_y) {
-        for (uint32_t x = 0; x < decoder->image->width && code == EXR_ERR_SUCCESS; x += step_x) {
-            exr_chunk_info_t chunk;
-            code = exr_read_tile_chunk_info(decoder->context, 0, (int)(x / step_x),
-                                            (int)(y / step_y), 0, 0, &chunk);
-            if (code == EXR_ERR_SUCCESS)
-                code = decode_chunk(decoder, &chunk, x, y);
-        }
-    }
-    return code;
-}
-
+/* Decodes chunk by chunk: tiles, or as many rows as the compression puts together. */
 static exr_result_t decode_pixels(exr_context_t context, const struct selection *selection,
                                   const struct image *image, int32_t top)
 {
     exr_storage_t storage;
+    int32_t width = (int32_t)image->width, height = 0;
     struct decoder decoder = {.context = context, .selection = selection, .image = image};
     exr_result_t code = exr_get_storage(context, 0, &storage);
+    bool tiled = code == EXR_ERR_SUCCESS && storage == EXR_STORAGE_TILED;
     if (code == EXR_ERR_SUCCESS)
-        code =
-            storage == EXR_STORAGE_TILED ? decode_tiles(&decoder) : decode_scanlines(&decoder, top);
+        code = tiled ? exr_get_tile_sizes(context, 0, 0, 0, &width, &height)
+                     : exr_get_scanlines_per_chunk(context, 0, &height);
+    if (code == EXR_ERR_SUCCESS && (width < 1 || height < 1))
+        code = EXR_ERR_CORRUPT_CHUNK;
+    uint32_t step_x = (uint32_t)width, step_y = (uint32_t)height;
+    for (uint32_t y = 0; y < image->height && code == EXR_ERR_SUCCESS; y += step_y) {
+        for (uint32_t x = 0; x < image->width && code == EXR_ERR_SUCCESS; x += step_x) {
+            exr_chunk_info_t chunk;
+            code = tiled ? exr_read_tile_chunk_info(context, 0, (int)(x / step_x),
+                                                    (int)(y / step_y), 0, 0, &chunk)
+                         : exr_read_scanline_chunk_info(context, 0, top + (int)y, &chunk);
+            if (code == EXR_ERR_SUCCESS)
+                code = decode_chunk(&decoder, &chunk, x, y);
+        }
+    }
     exr_decoding_destroy(context, &decoder.pipeline);
     return code;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/vec.h"
 #include "image/legend.h"
 
 /* Every 15th of the 256 colours of viridis (S. van der Walt and N. Smith, 2015; released into the
@@ -63,10 +64,7 @@ static double round_up(double value)
 /* A key that sorts floats: the bits of positive floats have their order. Others give 0. */
 static uint32_t order_of(float value)
 {
-    uint32_t bits = 0;
-    if (value > 0.0f)
-        memcpy(&bits, &value, sizeof bits);
-    return bits;
+    return value > 0.0f ? float_bits(value) : 0;
 }
 
 enum { HALF_COUNT = 1 << 16 };
@@ -79,89 +77,6 @@ static uint32_t find_half(const uint64_t counts[HALF_COUNT], uint64_t *rank)
     while (half + 1 < HALF_COUNT && *rank > counts[half])
         *rank -= counts[half++];
     return half;
-}
-
-/* The finite value of rank `rank` (from 1), by radix selection: first the upper 16 bits, then the
-   lower ones. */
-static float value_of_rank(const struct image *values, uint64_t rank, uint64_t counts[HALF_COUNT])
-{
-    size_t count = (size_t)values->width * values->height;
-    memset(counts, 0, HALF_COUNT * sizeof *counts);
-    for (size_t i = 0; i < count; ++i)
-        counts[order_of(values->pixels[i]) >> 16] += isfinite(values->pixels[i]) ? 1 : 0;
-    uint32_t upper = find_half(counts, &rank);
-    memset(counts, 0, HALF_COUNT * sizeof *counts);
-    for (size_t i = 0; i < count; ++i) {
-        uint32_t bits = order_of(values->pixels[i]);
-        if (isfinite(values->pixels[i]) && bits >> 16 == upper)
-            ++counts[bits & (HALF_COUNT - 1)];
-    }
-    uint32_t bits = upper << 16 | find_half(counts, &rank);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-static double largest_of(const struct image *values, uint64_t *finite_count)
-{
-    double largest = 0.0;
-    size_t count = (size_t)values->width * values->height;
-    *finite_count = 0;
-    for (size_t i = 0; i < count; ++i) {
-        if (!isfinite(values->pixels[i]))
-            continue;
-        ++*finite_count;
-        largest = fmax(largest, (double)values->pixels[i]);
-    }
-    return largest;
-}
-
-double image_heat_scale(const struct image *values)
-{
-    uint64_t finite_count;
-    if (!values->pixels || values->channels != 1)
-        return 1.0;
-    double scale = largest_of(values, &finite_count);
-    uint64_t *counts = array_alloc(HALF_COUNT, sizeof *counts);
-    if (counts && finite_count) {
-        uint64_t rank = finite_count - finite_count / 200;
-        double value = (double)value_of_rank(values, rank, counts);
-        scale = value > 0.0 ? value : scale;
-    }
-    free(counts); /* without memory for counts the largest value is the scale */
-    return scale > 0.0 ? round_up(scale) : 1.0;
-}
-
-struct ramp {
-    float linear[256]; /* linear value of each sRGB code */
-};
-
-static void ramp_init(struct ramp *ramp)
-{
-    for (int code = 0; code < 256; ++code)
-        ramp->linear[code] = image_linear_from_srgb((float)code / 255.0f);
-}
-
-struct painter {
-    struct ramp ramp;
-    double scale;
-    bool is_signed;
-};
-
-static void put_heat(const struct painter *painter, float value, float *to)
-{
-    uint8_t codes[3];
-    if (!isfinite(value)) {
-        to[0] = to[1] = to[2] = NAN;
-        return;
-    }
-    double share = (double)value / painter->scale;
-    if (painter->is_signed)
-        heat_signed_color(share, codes);
-    else
-        heat_color(share, codes);
-    for (int c = 0; c < 3; ++c)
-        to[c] = painter->ramp.linear[codes[c]];
 }
 
 /* The value farthest from 0 among three channels, with its sign; NaN where any is NaN. */
@@ -179,17 +94,85 @@ static float value_at(const struct image *values, size_t i)
     return values->channels < 3 ? pixel[0] : farthest(pixel);
 }
 
-static whit_result signed_scale(const struct image *values, double *scale)
+/* What counts for the scale: the value, or with `is_signed` its distance from 0. */
+static float size_at(const struct image *values, bool is_signed, size_t i)
 {
-    struct image distances;
-    whit_result result = image_init(&distances, values->width, values->height, 1, false);
-    if (result != WHIT_OK)
-        return result;
-    for (size_t i = 0; i < (size_t)values->width * values->height; ++i)
-        distances.pixels[i] = fabsf(value_at(values, i));
-    *scale = image_heat_scale(&distances);
-    image_finish(&distances);
-    return WHIT_OK;
+    float value = value_at(values, i);
+    return is_signed ? fabsf(value) : value;
+}
+
+/* The finite size of rank `rank` (from 1), by radix selection: first the upper 16 bits, then the
+   lower ones. */
+static float size_of_rank(const struct image *values, bool is_signed, uint64_t rank,
+                          uint64_t counts[HALF_COUNT])
+{
+    size_t count = (size_t)values->width * values->height;
+    uint32_t upper = 0;
+    for (int lower = 0; lower < 2; ++lower) {
+        memset(counts, 0, HALF_COUNT * sizeof *counts);
+        for (size_t i = 0; i < count; ++i) {
+            float size = size_at(values, is_signed, i);
+            uint32_t bits = order_of(size);
+            if (isfinite(size) && (!lower || bits >> 16 == upper))
+                ++counts[lower ? bits & (HALF_COUNT - 1) : bits >> 16];
+        }
+        upper = upper << 16 | find_half(counts, &rank);
+    }
+    return float_of_bits(upper);
+}
+
+static double largest_of(const struct image *values, bool is_signed, uint64_t *finite_count)
+{
+    double largest = 0.0;
+    size_t count = (size_t)values->width * values->height;
+    *finite_count = 0;
+    for (size_t i = 0; i < count; ++i) {
+        float size = size_at(values, is_signed, i);
+        *finite_count += isfinite(size) ? 1 : 0;
+        largest = isfinite(size) ? fmax(largest, (double)size) : largest;
+    }
+    return largest;
+}
+
+static double scale_of(const struct image *values, bool is_signed)
+{
+    uint64_t finite_count;
+    double scale = largest_of(values, is_signed, &finite_count);
+    uint64_t *counts = array_alloc(HALF_COUNT, sizeof *counts);
+    if (counts && finite_count) {
+        uint64_t rank = finite_count - finite_count / 200;
+        double value = (double)size_of_rank(values, is_signed, rank, counts);
+        scale = value > 0.0 ? value : scale;
+    }
+    free(counts); /* without memory for counts the largest value is the scale */
+    return scale > 0.0 ? round_up(scale) : 1.0;
+}
+
+double image_heat_scale(const struct image *values)
+{
+    return values->pixels && values->channels == 1 ? scale_of(values, false) : 1.0;
+}
+
+struct painter {
+    float linear[256]; /* by sRGB code */
+    double scale;
+    bool is_signed;
+};
+
+static void put_heat(const struct painter *painter, float value, float *to)
+{
+    uint8_t codes[3];
+    if (!isfinite(value)) {
+        to[0] = to[1] = to[2] = NAN;
+        return;
+    }
+    double share = (double)value / painter->scale;
+    if (painter->is_signed)
+        heat_signed_color(share, codes);
+    else
+        heat_color(share, codes);
+    for (int c = 0; c < 3; ++c)
+        to[c] = painter->linear[codes[c]];
 }
 
 static bool can_paint(const struct image *values, const whit_heat_params *params)
@@ -206,21 +189,18 @@ whit_result image_heat(const struct image *values, const whit_heat_params *param
         return WHIT_ERROR_USAGE;
     struct legend legend;
     struct painter painter = {.scale = params->scale, .is_signed = params->is_signed};
-    whit_result result = WHIT_OK;
-    if (!(painter.scale > 0.0) && params->is_signed)
-        result = signed_scale(values, &painter.scale);
-    else if (!(painter.scale > 0.0))
-        painter.scale = image_heat_scale(values);
+    if (!(painter.scale > 0.0))
+        painter.scale = scale_of(values, params->is_signed);
     legend_init(&legend, values->width, params->title, params->unit, painter.scale);
     legend.is_signed = params->is_signed;
     if (values->height > UINT32_MAX - legend.height)
         return WHIT_ERROR_MEMORY;
-    if (result == WHIT_OK)
-        result = image_init(out, legend.width, values->height + legend.height, 3, false);
+    whit_result result = image_init(out, legend.width, values->height + legend.height, 3, false);
     if (result != WHIT_OK)
         return result;
-    ramp_init(&painter.ramp);
-    legend_draw(&legend, painter.ramp.linear, values->height, out);
+    for (int code = 0; code < 256; ++code)
+        painter.linear[code] = image_linear_from_srgb((float)code / 255.0f);
+    legend_draw(&legend, painter.linear, values->height, out);
     uint32_t left = (legend.width - values->width) / 2;
     for (uint32_t y = 0; y < values->height; ++y) {
         for (uint32_t x = 0; x < values->width; ++x)
