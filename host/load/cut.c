@@ -8,6 +8,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "load/format.h"
 
 /* Writes keywords in upper case, in which assimp does not know them, if they stand at `at`. */
 static void hide_keyword(char *at)
@@ -41,23 +42,19 @@ static void repair_text(char *text, size_t *size_bytes)
 
 whit_result cut_check_stl(struct scene *scene, const char *path, uint8_t *data, size_t *size_bytes)
 {
-    enum { HEAD_BYTES = 84, TRIANGLE_BYTES = 50 };
     /* The header of a binary STL is any text, also `solid`. But no text has zero bytes, and every
        count of less than 2^24 has. */
-    const uint8_t *at = data + HEAD_BYTES - 4;
-    uint64_t count = *size_bytes < HEAD_BYTES ? 0
-                                              : at[0] | (uint64_t)at[1] << 8 |
-                                                    (uint64_t)at[2] << 16 | (uint64_t)at[3] << 24;
-    bool whole = count && *size_bytes == HEAD_BYTES + count * TRIANGLE_BYTES;
-    if (*size_bytes < HEAD_BYTES || (!whole && !memchr(data, 0, HEAD_BYTES))) {
+    uint32_t count;
+    bool whole = format_is_stl(data, *size_bytes, &count);
+    if (*size_bytes < STL_HEADER_BYTES || (!whole && !memchr(data, 0, STL_HEADER_BYTES))) {
         repair_text((char *)data, size_bytes);
         return WHIT_OK;
     }
-    uint64_t room = (*size_bytes - HEAD_BYTES) / TRIANGLE_BYTES;
-    uint64_t used = HEAD_BYTES + count * TRIANGLE_BYTES;
+    uint64_t room = (*size_bytes - STL_HEADER_BYTES) / STL_TRIANGLE_BYTES;
+    uint64_t used = STL_HEADER_BYTES + (uint64_t)count * STL_TRIANGLE_BYTES;
     if (count > room || (count == 0 && room)) {
-        log_error(&scene->log, "%s: it says that it has %llu triangles, and has room for %llu",
-                  path, (unsigned long long)count, (unsigned long long)room);
+        log_error(&scene->log, "%s: it says that it has %u triangles, and has room for %llu", path,
+                  count, (unsigned long long)room);
         return WHIT_ERROR_INPUT;
     }
     if (used < *size_bytes)

@@ -1,11 +1,11 @@
 #include "load/format.h"
 #include "base/text.h"
 
-#include <stdbool.h>
+#include <jansson.h>
 #include <string.h>
 
 /* HEAD_BYTES: how far the root of an XML file is looked for, behind its first line and comments. */
-enum { HEAD_BYTES = 4096, STL_HEADER_BYTES = 84, STL_TRIANGLE_BYTES = 50 };
+enum { HEAD_BYTES = 4096 };
 
 static bool begins(const char *text, const char *word)
 {
@@ -27,42 +27,20 @@ static bool head_has(const uint8_t *data, size_t size_bytes, const char *word)
     return false;
 }
 
-/* A binary STL has no magic number; it is recognised by its size, which fits the count of triangles
-   in its header. */
-static bool is_binary_stl(const uint8_t *data, size_t size_bytes)
+bool format_is_stl(const uint8_t *data, size_t size_bytes, uint32_t *count)
 {
-    if (size_bytes < STL_HEADER_BYTES)
-        return false;
-    const uint8_t *at = data + STL_HEADER_BYTES - 4;
-    uint64_t count = at[0] | (uint64_t)at[1] << 8 | (uint64_t)at[2] << 16 | (uint64_t)at[3] << 24;
-    return count && size_bytes == STL_HEADER_BYTES + STL_TRIANGLE_BYTES * count;
+    *count = size_bytes < STL_HEADER_BYTES ? 0 : load_u32(data + STL_HEADER_BYTES - 4);
+    return *count && size_bytes == STL_HEADER_BYTES + STL_TRIANGLE_BYTES * (uint64_t)*count;
 }
 
 /* Whether the outermost JSON object has this key. It tells glTF, which requires "asset", from
    whit's scene files, which have no such key. */
-static bool has_key(const char *text, const char *quoted_key)
+static bool has_key(const char *text, const char *key)
 {
-    int depth = 0;
-    for (const char *at = text; *at; ++at) {
-        if (*at == '{' || *at == '[')
-            depth++;
-        else if (*at == '}' || *at == ']')
-            depth--;
-        if (*at != '"')
-            continue;
-        if (depth == 1 && begins(at, quoted_key)) {
-            const char *behind = at + strlen(quoted_key);
-            while (is_blank(*behind))
-                behind++;
-            if (*behind == ':')
-                return true;
-        }
-        for (at++; *at && *at != '"'; ++at)
-            at += *at == '\\' && at[1];
-        if (!*at)
-            return false;
-    }
-    return false;
+    json_t *root = json_loads(text, 0, NULL);
+    bool found = json_object_get(root, key);
+    json_decref(root);
+    return found;
 }
 
 /* Whether the first line that is no comment begins with a keyword of OBJ. */
@@ -90,19 +68,20 @@ static bool is_off(const char *text)
 const char *format_find(const uint8_t *data, size_t size_bytes)
 {
     const char *text = (const char *)data;
+    uint32_t triangles;
     if (begins(text, "glTF"))
         return "glb";
     if (begins(text, "PK\x03\x04"))
         return "3mf";
     if (begins(text, "Kaydara FBX Binary") || begins(text, "; FBX"))
         return "fbx";
-    if (is_binary_stl(data, size_bytes))
+    if (format_is_stl(data, size_bytes, &triangles))
         return "stl";
     text += text_mark_bytes(text);
     while (is_blank(*text))
         text++;
     if (*text == '{')
-        return has_key(text, "\"asset\"") ? "gltf" : "json";
+        return has_key(text, "asset") ? "gltf" : "json";
     if (begins(text, "ply") && (text[3] == '\n' || text[3] == '\r'))
         return "ply";
     if (begins(text, "solid") && head_has(data, size_bytes, "facet"))

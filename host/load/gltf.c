@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "base/path.h"
 #include "base/text.h"
+#include "load/format.h"
 #include "load/gltf_buffer.h"
 #include "load/gltf_geometry.h"
 #include "load/gltf_json.h"
@@ -23,11 +24,6 @@ enum {
 
 /* --- file to JSON --------------------------------------------------------------------------- */
 
-static uint32_t read_u32(const uint8_t *at)
-{
-    return at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
-}
-
 static bool fail_file(const struct gltf *gltf, const char *reason)
 {
     log_error(&gltf->scene->log, "%s: %s", gltf->request->path, reason);
@@ -41,7 +37,7 @@ static bool split(struct gltf *gltf, const uint8_t **json, size_t *json_bytes)
     size_t size = gltf->file_bytes;
     *json = file;
     *json_bytes = size;
-    if (size < 4 || read_u32(file) != GLB_MAGIC) {
+    if (size < 4 || load_u32(file) != GLB_MAGIC) {
         size_t mark_bytes = size >= 3 ? text_mark_bytes((const char *)file) : 0;
         *json += mark_bytes;
         *json_bytes -= mark_bytes;
@@ -49,17 +45,17 @@ static bool split(struct gltf *gltf, const uint8_t **json, size_t *json_bytes)
     }
     if (size < GLB_HEADER_BYTES + GLB_CHUNK_BYTES)
         return fail_file(gltf, "the GLB ends within its header");
-    if (read_u32(file + 4) != 2)
+    if (load_u32(file + 4) != 2)
         return fail_file(gltf, "the GLB is not of version 2");
-    size_t length = read_u32(file + 8);
+    size_t length = load_u32(file + 8);
     if (length > size)
         return fail_file(gltf, "the GLB is cut short");
     if (length < GLB_HEADER_BYTES + GLB_CHUNK_BYTES)
         return fail_file(gltf, "the GLB says that it ends within its header");
     size_t at = GLB_HEADER_BYTES;
     for (uint32_t chunk = 0; length - at >= GLB_CHUNK_BYTES; chunk++) {
-        size_t bytes = read_u32(file + at);
-        uint32_t type = read_u32(file + at + 4);
+        size_t bytes = load_u32(file + at);
+        uint32_t type = load_u32(file + at + 4);
         at += GLB_CHUNK_BYTES;
         if (bytes > length - at)
             return fail_file(gltf, "a chunk of the GLB runs past its end");

@@ -1,7 +1,9 @@
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
+#include "base/vec.h"
 #include "load/gltf_accessor.h"
 #include "load/gltf_buffer.h"
 #include "load/gltf_json.h"
@@ -9,21 +11,24 @@
 
 #define OFFSET_LIMIT (UINT64_C(1) << 40)
 
-static uint32_t component_bytes(uint32_t component)
+/* A type of components. */
+struct component {
+    uint32_t code, bytes;
+    bool is_signed;
+    float largest; /* that is 1 in normalized elements; 0: they are not normalized */
+};
+
+/* All zero for an unknown code. */
+static struct component component_of(uint32_t code)
 {
-    switch (component) {
-    case 5120: /* byte */
-    case 5121:
-        return 1;
-    case 5122: /* short */
-    case 5123:
-        return 2;
-    case 5125: /* unsigned int */
-    case GLTF_FLOAT:
-        return 4;
-    default:
-        return 0;
-    }
+    static const struct component all[] = {
+        {5120, 1, true, 127.0f},   {GLTF_UNSIGNED_BYTE, 1, false, 255.0f},
+        {5122, 2, true, 32767.0f}, {GLTF_UNSIGNED_SHORT, 2, false, 65535.0f},
+        {5125, 4, false, 0.0f},    {GLTF_FLOAT, 4, true, 0.0f}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (all[i].code == code)
+            return all[i];
+    return (struct component){0};
 }
 
 static uint32_t components_of(const char *type)
@@ -59,15 +64,15 @@ bool gltf_accessor(const struct gltf *gltf, uint32_t index, struct gltf_accessor
     out->components = components_of(type);
     out->count = (uint32_t)count;
     out->sparse = sparse;
-    if (!component_bytes(out->component) || !out->components)
+    if (!component_of(out->component).bytes || !out->components)
         return gltf_fail(gltf, &at, "its componentType or type is unknown");
     return count > 0 || gltf_fail(gltf, &at, "is empty");
 }
 
 bool gltf_is_whole(const struct gltf_accessor *accessor)
 {
-    uint32_t component = accessor->component;
-    return component == GLTF_UNSIGNED_BYTE || component == GLTF_UNSIGNED_SHORT || component == 5125;
+    struct component component = component_of(accessor->component);
+    return component.bytes && !component.is_signed;
 }
 
 /* --- elements ------------------------------------------------------------------------------- */
@@ -82,7 +87,7 @@ struct elements {
 static bool find_elements(const struct gltf *gltf, const struct gltf_place *at,
                           const struct gltf_accessor *accessor, struct elements *out)
 {
-    size_t size, element = (size_t)component_bytes(accessor->component) * accessor->components;
+    size_t size, element = (size_t)component_of(accessor->component).bytes * accessor->components;
     uint32_t step;
     if (!gltf_view(gltf, accessor->view, &out->data, &size, &step))
         return false;
@@ -94,39 +99,21 @@ static bool find_elements(const struct gltf *gltf, const struct gltf_place *at,
     return true;
 }
 
-static float component_value(const uint8_t *at, uint32_t component, bool normalized)
-{
-    union {
-        float f;
-        uint32_t u32;
-        uint16_t u16;
-        int16_t i16;
-    } value = {0};
-    float scaled;
-    memcpy(&value, at, component_bytes(component));
-    switch (component) {
-    case 5120:
-        scaled = (float)(int8_t)at[0] / 127.0f;
-        return !normalized ? (float)(int8_t)at[0] : scaled < -1 ? -1.0f : scaled;
-    case 5121:
-        return normalized ? (float)at[0] / 255.0f : (float)at[0];
-    case 5122:
-        scaled = (float)value.i16 / 32767.0f;
-        return !normalized ? (float)value.i16 : scaled < -1 ? -1.0f : scaled;
-    case 5123:
-        return normalized ? (float)value.u16 / 65535.0f : (float)value.u16;
-    case 5125:
-        return (float)value.u32;
-    default:
-        return value.f;
-    }
-}
-
-static uint32_t whole_value(const uint8_t *at, uint32_t component)
+static uint32_t whole_value(const uint8_t *at, uint32_t bytes)
 {
     uint32_t value = 0;
-    memcpy(&value, at, component_bytes(component)); /* little-endian, as the host is */
+    memcpy(&value, at, bytes); /* little-endian, as the host is */
     return value;
+}
+
+static float component_value(const uint8_t *at, const struct component *type, bool normalized)
+{
+    uint32_t whole = whole_value(at, type->bytes), sign = 1u << (8 * type->bytes - 1);
+    if (type->code == GLTF_FLOAT)
+        return float_of_bits(whole);
+    bool negative = type->is_signed && (whole & sign);
+    float value = negative ? (float)((int64_t)whole - 2 * (int64_t)sign) : (float)whole;
+    return normalized && type->largest > 0 ? fmaxf(value / type->largest, -1.0f) : value;
 }
 
 /* Output rows of `width` words. Where an element has fewer components, as a colour without alpha,
@@ -137,16 +124,15 @@ struct rows {
     uint32_t width;
 };
 
-static void store(const struct gltf_accessor *accessor, const uint8_t *from, size_t row,
-                  const struct rows *to)
+static void store(const struct gltf_accessor *accessor, const struct component *type,
+                  const uint8_t *from, size_t row, const struct rows *to)
 {
     size_t first = row * to->width;
-    uint32_t component = accessor->component, bytes = component_bytes(component);
     for (uint32_t k = 0; to->whole && k < accessor->components; k++)
-        to->whole[first + k] = whole_value(from + (size_t)k * bytes, component);
+        to->whole[first + k] = whole_value(from + (size_t)k * type->bytes, type->bytes);
     for (uint32_t k = 0; to->floats && k < accessor->components; k++)
         to->floats[first + k] =
-            component_value(from + (size_t)k * bytes, component, accessor->normalized);
+            component_value(from + (size_t)k * type->bytes, type, accessor->normalized);
 }
 
 /* Overwrites elements by those of the sparse accessor, which has indices and values. */
@@ -177,12 +163,14 @@ static bool store_sparse(const struct gltf *gltf, const struct gltf_accessor *ac
     if (!find_elements(gltf, &at, &numbers, &from_numbers) ||
         !find_elements(gltf, &at, &values, &from_values))
         return false;
+    const struct component type = component_of(accessor->component);
+    uint32_t number_bytes = component_of(numbers.component).bytes;
     for (size_t i = 0; i < count; i++) {
-        uint32_t row = whole_value(from_numbers.data + i * from_numbers.stride, numbers.component);
+        uint32_t row = whole_value(from_numbers.data + i * from_numbers.stride, number_bytes);
         if (row >= accessor->count)
             return gltf_fail(gltf, &at, "index %u is out of range, there are %u", row,
                              accessor->count);
-        store(accessor, from_values.data + i * from_values.stride, row, to);
+        store(accessor, &type, from_values.data + i * from_values.stride, row, to);
     }
     return true;
 }
@@ -191,6 +179,7 @@ static bool store_all(const struct gltf *gltf, const struct gltf_accessor *acces
                       const struct rows *to)
 {
     struct gltf_place at = gltf_place("accessors[%u]", accessor->index);
+    const struct component type = component_of(accessor->component);
     static const uint8_t zeros[16 * 4];
     struct elements from = {zeros, 0};
     if (accessor->view != SCENE_NONE && !find_elements(gltf, &at, accessor, &from))
@@ -198,7 +187,7 @@ static bool store_all(const struct gltf *gltf, const struct gltf_accessor *acces
     for (size_t i = 0; i < accessor->count; i++) {
         for (uint32_t k = accessor->components; k < to->width; k++)
             to->floats[i * to->width + k] = 1.0f;
-        store(accessor, from.data + i * from.stride, i, to);
+        store(accessor, &type, from.data + i * from.stride, i, to);
     }
     return !accessor->sparse || store_sparse(gltf, accessor, to);
 }

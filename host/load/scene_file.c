@@ -119,60 +119,40 @@ static bool read_light_values(struct reader *reader, const struct place *place,
     return true;
 }
 
-/* Keys that lights of this kind may have, in addition to those of all lights; NULL: scene files
-   have no lights of this kind. */
-static const char *const *light_keys(whit_light_kind kind)
-{
-    static const char *const point[] = {"position", "falloff", "range", NULL};
-    static const char *const directional[] = {"direction", "target", NULL};
-    static const char *const spot[] = {"position", "direction", "target", "falloff",
-                                       "range",    "inner",     "outer",  NULL};
-    static const char *const rectangle[] = {"position", "u", "v", "two_sided", NULL};
-    static const char *const triangle[] = {"points", "two_sided", NULL};
-    switch (kind) {
-    case WHIT_LIGHT_POINT:
-        return point;
-    case WHIT_LIGHT_DIRECTIONAL:
-        return directional;
-    case WHIT_LIGHT_SPOT:
-        return spot;
-    case WHIT_LIGHT_RECTANGLE:
-        return rectangle;
-    case WHIT_LIGHT_TRIANGLE:
-        return triangle;
-    case WHIT_LIGHT_AREA_SAMPLE:
-    case WHIT_LIGHT_KINDS:
-        break;
-    }
-    return NULL;
-}
+/* The kinds of lights that files have, the default first, and the keys of each in addition to those
+   of all lights. */
+enum { LIGHT_KINDS = 5 };
+static const whit_light_kind light_kinds[LIGHT_KINDS] = {WHIT_LIGHT_POINT, WHIT_LIGHT_DIRECTIONAL,
+                                                         WHIT_LIGHT_SPOT, WHIT_LIGHT_RECTANGLE,
+                                                         WHIT_LIGHT_TRIANGLE};
+static const char *const point_keys[] = {"position", "falloff", "range", NULL};
+static const char *const directional_keys[] = {"direction", "target", NULL};
+static const char *const spot_keys[] = {"position", "direction", "target", "falloff",
+                                        "range",    "inner",     "outer",  NULL};
+static const char *const rectangle_keys[] = {"position", "u", "v", "two_sided", NULL};
+static const char *const triangle_keys[] = {"points", "two_sided", NULL};
+static const char *const *const light_keys[LIGHT_KINDS] = {point_keys, directional_keys, spot_keys,
+                                                           rectangle_keys, triangle_keys};
 
 static bool read_light(struct reader *reader, const struct place *place, const json_t *object)
 {
     static const char *const common[] = {"name", "kind", "color", "intensity", "animation", NULL};
-    whit_light_kind kinds[WHIT_LIGHT_KINDS]; /* allowed in files; the first is the default */
-    const char *names[WHIT_LIGHT_KINDS + 1];
-    const char *const *own[WHIT_LIGHT_KINDS];
-    uint32_t count = 0, kind = 0;
+    const char *names[LIGHT_KINDS + 1] = {NULL};
+    uint32_t kind = 0;
     const char *name = "light";
     struct scene_light light = {.direction = {0, -1, 0}, .color = {1, 1, 1}, .node = SCENE_NONE};
     if (!json_is_object(object))
         return reader_fail(reader, place, "a light in { } is expected");
-    for (int i = 0; i < WHIT_LIGHT_KINDS; ++i) {
-        kinds[count] = (whit_light_kind)i;
-        names[count] = scene_light_kind_names[i];
-        own[count] = light_keys(kinds[count]);
-        count += own[count] != NULL;
-    }
-    names[count] = NULL;
+    for (int i = 0; i < LIGHT_KINDS; ++i)
+        names[i] = scene_light_kind_names[light_kinds[i]];
     if (!reader_choice(reader, place, object, "kind", names, &kind))
         return false;
-    const char *const *lists[] = {common, own[kind]};
-    const char *foreign = reader_foreign_key(object, lists, 2, own, count);
+    const char *const *lists[] = {common, light_keys[kind]};
+    const char *foreign = reader_foreign_key(object, lists, 2, light_keys, LIGHT_KINDS);
     struct place at_foreign = {place, foreign, 0};
     if (foreign)
         return reader_fail(reader, &at_foreign, "a %s light has no `%s`", names[kind], foreign);
-    light.kind = kinds[kind];
+    light.kind = light_kinds[kind];
     light.falloff = light.kind != WHIT_LIGHT_DIRECTIONAL;
     if (!reader_object_lists(reader, place, object, lists, 2) ||
         !reader_string(reader, place, object, "name", &name) ||

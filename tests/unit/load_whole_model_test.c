@@ -1,5 +1,7 @@
 /* FBX, COLLADA, 3MF and OFF: units, up axis, nodes, materials and textures are imported; notes name
    the things that are not. */
+#include <zlib.h>
+
 #include "../random.h"
 #include "base/file.h"
 #include "base/text.h"
@@ -491,23 +493,13 @@ static void put(uint8_t *to, size_t *at, const void *data, size_t bytes)
     *at += bytes;
 }
 
-static uint32_t crc_of(const char *text, size_t bytes)
-{
-    uint32_t crc = UINT32_MAX;
-    for (size_t i = 0; i < bytes; i++) {
-        crc ^= (uint8_t)text[i];
-        for (int k = 0; k < 8; k++)
-            crc = crc >> 1 ^ (crc & 1 ? 0xedb88320 : 0);
-    }
-    return ~crc;
-}
-
 /* Adds a file to the ZIP, stored, or deflated as one uncompressed block. */
 static void add_file(struct package *package, const char *name, const char *text, bool deflated)
 {
     uint16_t bytes = (uint16_t)strlen(text), name_bytes = (uint16_t)strlen(name);
     uint16_t inverse = (uint16_t)~bytes, method = deflated ? 8 : 0;
-    const uint32_t offset = (uint32_t)package->size, crc = crc_of(text, bytes);
+    const uint32_t offset = (uint32_t)package->size,
+                   crc = (uint32_t)crc32(0, (const uint8_t *)text, bytes);
     const uint32_t sizes[2] = {bytes + (deflated ? 5u : 0u), bytes};
     const uint16_t lengths[2] = {name_bytes, 0};
     uint8_t common[26] = {20, 0}; /* what both headers have */
