@@ -454,7 +454,7 @@ TEST_IN(exr_kinds_are_read, folder_begin, folder_end)
     assert_int_equal(messages.errors, 0);
 }
 
-/* Of what goes into a pipe, an EXR is kept in memory until its end. */
+/* A pipe cannot seek: an EXR for it is kept in memory until its end. */
 TEST_IN(pipes_get_the_bytes_of_files, folder_begin, folder_end)
 {
     static const char *const names[] = {"a.png", "a.exr", "a.pfm"};
