@@ -153,9 +153,9 @@ static void collect(struct search *search)
     const struct cost_report *report = search->report;
     enum cost_metric metric = search->goal->metric;
     search->usual_bias = choose_to_sum(bias_of(&report->rows[0], metric), metric);
-    for (uint32_t k = 0; k < search->count; ++k)
-        search->effects[k][search->table[k].usual] = (struct effect){.ratio = 1.0, .known = true};
-    search->effects[search->aa][search->table[search->aa].usual].error =
+    for (uint32_t k = 0; k < KNOBS; ++k)
+        search->effects[k][knob_table[k].usual] = (struct effect){.ratio = 1.0, .known = true};
+    search->effects[search->aa][knob_table[search->aa].usual].error =
         choose_to_sum(cost_error_of(&report->rows[0].error, metric), metric);
     for (uint32_t i = 1; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
@@ -169,9 +169,9 @@ static void collect(struct search *search)
 static void take_free(struct search *search)
 {
     const struct cost_report *report = search->report;
-    double ratios[COST_CHOICE_KNOBS];
-    for (uint32_t k = 0; k < search->count; ++k) {
-        search->settings[k] = (uint8_t)search->table[k].usual;
+    double ratios[KNOBS];
+    for (uint32_t k = 0; k < KNOBS; ++k) {
+        search->settings[k] = (uint8_t)knob_table[k].usual;
         ratios[k] = 1.0;
     }
     for (uint32_t i = 1; i < report->row_count; ++i) {
@@ -189,16 +189,11 @@ static void take_free(struct search *search)
     }
 }
 
-bool choose_is_searched(const struct search *search, uint32_t knob)
-{
-    return knob_change(&search->table[knob]) == SETTING_LIGHT;
-}
-
 /* Tries all combinations of shading settings, knob by knob, and keeps the cheapest one below the
    limit of error; samples per pixel also beyond those that were measured. */
 static void walk(struct search *search, uint32_t knob, double ratio, double sum)
 {
-    if (knob == search->count) {
+    if (knob == KNOBS) {
         double ms = search->report->usual_ms_max * ratio;
         double error = choose_from_sum(sum, search->goal->metric);
         if (error > search->goal->limit || (search->best.found && ms >= search->best.ms))
@@ -208,12 +203,12 @@ static void walk(struct search *search, uint32_t knob, double ratio, double sum)
         memcpy(search->best.settings, search->settings, sizeof search->settings);
         return;
     }
-    if (!choose_is_searched(search, knob)) {
+    if (knob_change(&knob_table[knob]) != SETTING_LIGHT) {
         const struct effect *effect = &search->effects[knob][search->settings[knob]];
         walk(search, knob + 1, ratio * effect->ratio, sum);
         return;
     }
-    for (uint32_t s = 0; s < search->table[knob].count; ++s) {
+    for (uint32_t s = 0; s < knob_table[knob].count; ++s) {
         const struct effect *effect = &search->effects[knob][s];
         search->settings[knob] = (uint8_t)s;
         if (effect->known)
@@ -223,7 +218,7 @@ static void walk(struct search *search, uint32_t knob, double ratio, double sum)
         return;
     for (search->samples = 4; search->samples <= COST_SAMPLES_MAX; search->samples *= 4) {
         const struct effect effect = choose_samples(search, search->samples);
-        search->settings[knob] = (uint8_t)search->table[knob].usual;
+        search->settings[knob] = (uint8_t)knob_table[knob].usual;
         if (effect.known)
             walk(search, knob + 1, ratio * effect.ratio, sum + effect.error);
     }
@@ -233,7 +228,6 @@ static void walk(struct search *search, uint32_t knob, double ratio, double sum)
 struct cost_choice cost_choose(const struct cost_report *report, const struct cost_goal *goal)
 {
     struct search search = {.report = report, .goal = goal, .aa = knob_find("aa")};
-    search.table = knob_table(&search.count);
     collect(&search);
     take_free(&search);
     if (goal->kind == COST_WITHIN)
@@ -257,11 +251,9 @@ struct cost_choice cost_choose_budget(const struct cost_report *report, double b
 
 void cost_choice_apply(const struct cost_choice *choice, struct settings *settings)
 {
-    uint32_t count;
-    const struct knob *table = knob_table(&count);
-    for (uint32_t k = 0; k < count; ++k) {
-        if (choice->settings[k] != table[k].usual)
-            knob_apply(&table[k], choice->settings[k], settings);
+    for (uint32_t k = 0; k < KNOBS; ++k) {
+        if (choice->settings[k] != knob_table[k].usual)
+            knob_apply(&knob_table[k], choice->settings[k], settings);
     }
     if (choice->samples > 0)
         settings->picture.sampling = (whit_sampling){.count = choice->samples};

@@ -17,11 +17,10 @@ struct effect {
 struct search {
     const struct cost_report *report;
     const struct cost_goal *goal;
-    const struct knob *table;
-    uint32_t count, aa;
-    struct effect effects[COST_CHOICE_KNOBS][KNOB_SETTINGS_MAX];
+    uint32_t aa;
+    struct effect effects[KNOBS][KNOB_SETTINGS_MAX];
     double usual_bias; /* the usual settings' error without the sampling error: choose_to_sum */
-    uint8_t settings[COST_CHOICE_KNOBS];
+    uint8_t settings[KNOBS];
     uint32_t samples; /* 0: as the setting of knob `aa` says */
     struct cost_choice best;
 };
@@ -32,8 +31,6 @@ double choose_from_sum(double sum, enum cost_metric metric);
 /* The sum of a picture with four times as many samples as one that has `sum`: half the sampling
    error, as for random samples, and the same bias, which is that of the usual settings. */
 double choose_quadruple(const struct cost_report *report, enum cost_metric metric, double sum);
-/* Whether the search tries settings of this knob: only of knobs that change shading alone. */
-bool choose_is_searched(const struct search *search, uint32_t knob);
 
 /* Sets `best` of the rows in the Pareto set of time, by the report's clock, and error. */
 void cost_mark_best(struct cost_report *report, enum cost_metric metric);

@@ -77,7 +77,7 @@ struct cost_row {
 enum cost_goal_kind { COST_UNDER, COST_WITHIN };
 enum cost_metric { COST_RMSE, COST_FLIP };
 const char *cost_metric_name(enum cost_metric metric); /* "rmse" */
-enum { COST_GOALS_MAX = 5, COST_CHOICE_KNOBS = 32 };
+enum { COST_GOALS_MAX = 5 };
 struct cost_goal {
     enum cost_goal_kind kind;
     enum cost_metric metric;
@@ -176,9 +176,9 @@ double cost_error_left(const struct cost_report *report, const struct cost_row *
    errors. Rows of knob `aa` count with cost_error_left. */
 enum { COST_SAMPLES_MAX = 256 }; /* of COST_UNDER: more than were measured are extrapolated */
 struct cost_choice {
-    uint8_t settings[COST_CHOICE_KNOBS]; /* by index in knob_table: index of the knob's setting */
-    uint32_t samples;                    /* per pixel; 0: as the setting of knob `aa` says */
-    double contrast;                     /* above 0: adaptive by it, up to `samples_most` */
+    uint8_t settings[KNOBS]; /* by index in knob_table: index of the knob's setting */
+    uint32_t samples;        /* per pixel; 0: as the setting of knob `aa` says */
+    double contrast;         /* above 0: adaptive by it, up to `samples_most` */
     uint32_t samples_most;
     double ms, error; /* predicted: wall clock at full size; by the goal's metric */
     bool found;

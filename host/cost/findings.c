@@ -124,8 +124,7 @@ static double flip_beyond(const struct cost_row *row, const struct cost_row *dee
 
 static bool find_bounces(const struct cost_report *report, struct cost_finding *finding)
 {
-    uint32_t count;
-    const struct knob *depth = &knob_table(&count)[knob_find("depth")];
+    const struct knob *depth = &knob_table[knob_find("depth")];
     const char *enough = knob_setting_name(depth, depth->usual);
     const struct cost_row *deepest = row_of(report, "depth", "16"), *first = &report->rows[0];
     if (!deepest)

@@ -16,7 +16,7 @@
                {.text = "-" name_, .effect = name_, .name = "off"})                                \
     }
 
-static const struct knob table[] = {
+const struct knob knob_table[] = {
     {.name = "aa",
      .setting = "aa",
      VALUES({.text = "1"}, {.text = "4"}, {.text = "16"}, {.text = "64"},
@@ -73,16 +73,10 @@ static const struct knob table[] = {
      VALUES({.value = WHIT_LOAD_AUTO}, {.value = WHIT_LOAD_STORAGE}, {.value = WHIT_LOAD_TEXEL})},
 };
 
-const struct knob *knob_table(uint32_t *count)
-{
-    *count = sizeof table / sizeof table[0];
-    return table;
-}
-
 uint32_t knob_find(const char *name)
 {
-    for (uint32_t i = 0; i < sizeof table / sizeof table[0]; ++i) {
-        if (strcmp(table[i].name, name) == 0)
+    for (uint32_t i = 0; i < KNOBS; ++i) {
+        if (strcmp(knob_table[i].name, name) == 0)
             return i;
     }
     return WHIT_NONE;
@@ -98,6 +92,15 @@ const char *knob_setting_name(const struct knob *knob, uint32_t setting)
 {
     const char *name = knob->settings[setting].name;
     return name ? name : text_of(knob, setting);
+}
+
+uint32_t knob_find_setting(const struct knob *knob, const char *name)
+{
+    for (uint32_t s = 0; s < knob->count; ++s) {
+        if (strcmp(knob_setting_name(knob, s), name) == 0)
+            return s;
+    }
+    return WHIT_NONE;
 }
 
 const char *knob_change_name(enum setting_change change)
@@ -118,8 +121,8 @@ enum knob_level knob_level(const struct knob *knob)
 uint64_t knobs_of_light(void)
 {
     uint64_t bits = 0;
-    for (uint32_t i = 0; i < sizeof table / sizeof table[0]; ++i)
-        bits |= (uint64_t)(knob_change(&table[i]) == SETTING_LIGHT) << i;
+    for (uint32_t i = 0; i < KNOBS; ++i)
+        bits |= (uint64_t)(knob_change(&knob_table[i]) == SETTING_LIGHT) << i;
     return bits;
 }
 

@@ -28,11 +28,13 @@ struct knob {
     struct knob_setting settings[KNOB_SETTINGS_MAX];
 };
 
-/* All knobs; constant. */
-const struct knob *knob_table(uint32_t *count);
+enum { KNOBS = 17 };
+extern const struct knob knob_table[KNOBS];
 /* The index of the knob of that name in the table, or WHIT_NONE. */
 uint32_t knob_find(const char *name);
 const char *knob_setting_name(const struct knob *knob, uint32_t setting);
+/* The index of the setting of that name, or WHIT_NONE. */
+uint32_t knob_find_setting(const struct knob *knob, const char *name);
 /* The most that the knob may affect. SETTING_COST: neither ids nor pixels may change by a byte. */
 enum setting_change knob_change(const struct knob *knob);
 const char *knob_change_name(enum setting_change change);

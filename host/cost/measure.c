@@ -179,25 +179,23 @@ static const char *find_absence(const struct cost_request *request,
 
 static void list_rows(const struct cost_request *request, struct cost_report *report)
 {
-    uint32_t count;
-    const struct knob *table = knob_table(&count);
     report->rows[0] = (struct cost_row){.knob = "usual",
                                         .knob_index = WHIT_NONE,
                                         .setting_index = WHIT_NONE,
                                         .change = SETTING_COST,
                                         .ms = {-1.0, -1.0, -1.0}};
     report->row_count = 1;
-    for (uint32_t k = 0; k < count; ++k) {
+    for (uint32_t k = 0; k < KNOBS; ++k) {
         if (request->knobs != COST_KNOBS_ALL && !(request->knobs >> k & 1))
             continue;
-        for (uint32_t s = 0; s < table[k].count; ++s) {
-            if (s == table[k].usual)
+        for (uint32_t s = 0; s < knob_table[k].count; ++s) {
+            if (s == knob_table[k].usual)
                 continue;
-            const char *why = find_absence(request, report, &table[k], s);
+            const char *why = find_absence(request, report, &knob_table[k], s);
             if (why)
-                note_absence(report, &table[k], s, why);
+                note_absence(report, &knob_table[k], s, why);
             else if (report->row_count < COST_ROWS_MAX)
-                add_row(report, &table[k], k, s);
+                add_row(report, &knob_table[k], k, s);
         }
     }
 }
@@ -207,8 +205,7 @@ static whit_result measure_setting(struct measure *measure, uint32_t index)
     struct cost_report *report = measure->report;
     struct cost_row *row = &report->rows[index];
     struct settings target = measure->usual;
-    uint32_t count;
-    const struct knob *knob = &knob_table(&count)[row->knob_index];
+    const struct knob *knob = &knob_table[row->knob_index];
     char what[COST_NAME];
     snprintf(what, sizeof what, "%s %s", row->knob, row->setting);
     measure->row = index;
@@ -258,12 +255,10 @@ static bool is_kept(const struct cost_goal *goal, const struct cost_row *row, do
 
 static enum knob_level level_of(const struct cost_choice *choice)
 {
-    uint32_t count;
-    const struct knob *table = knob_table(&count);
     enum knob_level level = KNOB_VIEW;
-    for (uint32_t k = 0; k < count; ++k)
-        if (choice->settings[k] != table[k].usual && knob_level(&table[k]) > level)
-            level = knob_level(&table[k]);
+    for (uint32_t k = 0; k < KNOBS; ++k)
+        if (choice->settings[k] != knob_table[k].usual && knob_level(&knob_table[k]) > level)
+            level = knob_level(&knob_table[k]);
     return level;
 }
 

@@ -18,8 +18,8 @@ enum { SAMPLES_MANY = 64, SAMPLES_FEW = 16 };
 
 static bool calls_for_area_lights(const whit_scene *scene)
 {
-    uint32_t knob = knob_find("light-samples"), count;
-    return knob_absence(&knob_table(&count)[knob], 1, scene, WHIT_LOAD_AUTO) == NULL;
+    const struct knob *knob = &knob_table[knob_find("light-samples")];
+    return knob_absence(knob, 1, scene, WHIT_LOAD_AUTO) == NULL;
 }
 
 static whit_renderer_params reference_params(const struct measure *measure, uint32_t shrink,

@@ -63,12 +63,10 @@ uint32_t cost_step_of(const char *knob, const char *setting)
 }
 
 /* The index of the step's knob, and in *setting that of its setting. */
-static uint32_t find(const struct search *search, const struct step *step, uint32_t *setting)
+static uint32_t find(const struct step *step, uint32_t *setting)
 {
     uint32_t knob = knob_find(step->knob);
-    *setting = 0;
-    while (strcmp(knob_setting_name(&search->table[knob], *setting), step->setting) != 0)
-        ++*setting;
+    *setting = knob_find_setting(&knob_table[knob], step->setting);
     return knob;
 }
 
@@ -77,7 +75,7 @@ static uint32_t find(const struct search *search, const struct step *step, uint3
 /* The effect of that many samples per pixel, by its row of knob `aa`. NULL: it was not measured. */
 static const struct effect *sampled(const struct search *search, uint32_t samples)
 {
-    const struct knob *aa = &search->table[search->aa];
+    const struct knob *aa = &knob_table[search->aa];
     for (uint32_t s = 0; s < aa->count; ++s) {
         const char *name = knob_setting_name(aa, s);
         if (strtoul(name, NULL, 10) == samples)
@@ -125,12 +123,13 @@ struct effect choose_samples(const struct search *search, uint32_t samples)
 static struct effect others_effect(const struct search *search)
 {
     struct effect all = {.ratio = 1.0, .known = true};
-    for (uint32_t k = 0; k < search->count; ++k) {
+    for (uint32_t k = 0; k < KNOBS; ++k) {
         const struct effect *effect = &search->effects[k][search->settings[k]];
-        if (k == search->aa || (!choose_is_searched(search, k) && !effect->known))
+        bool light = knob_change(&knob_table[k]) == SETTING_LIGHT;
+        if (k == search->aa || (!light && !effect->known))
             continue;
         all.ratio *= effect->ratio;
-        all.error += choose_is_searched(search, k) ? effect->error : 0.0;
+        all.error += light ? effect->error : 0.0;
     }
     return all;
 }
@@ -159,7 +158,7 @@ static void take(struct search *search)
 static void be_careful(struct search *search)
 {
     for (size_t i = 0; i < sizeof careful / sizeof *careful; ++i) {
-        uint32_t setting, knob = find(search, &careful[i], &setting);
+        uint32_t setting, knob = find(&careful[i], &setting);
         const struct effect *effect = &search->effects[knob][setting];
         if (effect->known && effect->error < -CHOOSE_AS_RIGHT * search->usual_bias)
             search->settings[knob] = (uint8_t)setting;
@@ -171,7 +170,7 @@ void choose_within(struct search *search)
     be_careful(search);
     take(search);
     for (uint32_t i = 0; i < STEPS; ++i) {
-        uint32_t setting, knob = find(search, &order[i], &setting);
+        uint32_t setting, knob = find(&order[i], &setting);
         const struct effect *effects = search->effects[knob];
         uint32_t samples = search->goal->edges ? (order[i].samples + 3) / 4 : order[i].samples;
         if (search->best.found && search->best.samples >= samples)

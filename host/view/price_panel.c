@@ -59,9 +59,7 @@ void price_switch(struct view *view)
    own. */
 static void use(struct view *view, const struct cost_row *row)
 {
-    uint32_t count;
-    const struct knob *knob = &knob_table(&count)[row->knob_index];
-    knob_apply(knob, row->setting_index, &view->settings);
+    knob_apply(&knob_table[row->knob_index], row->setting_index, &view->settings);
     view->dirty = true;
 }
 
@@ -74,11 +72,9 @@ static double of_usual(const struct cost_report *report, const struct cost_row *
 static void draw_row(struct view *view, const struct cost_report *report,
                      const struct cost_row *row, uint32_t index)
 {
-    uint32_t count;
-    const struct knob *knobs = knob_table(&count);
     char label[COST_NAME + 16], text[COST_NOTE];
     const char *name = row->setting[0] ? row->setting : "as it is";
-    bool usable = row->knob_index < count && knob_level(&knobs[row->knob_index]) < KNOB_TREE;
+    bool usable = row->knob_index < KNOBS && knob_level(&knob_table[row->knob_index]) < KNOB_TREE;
     ui_table_next();
     snprintf(label, sizeof label, "%s##price%u", name, index);
     if (!usable)

@@ -18,8 +18,7 @@ static double random_up_to(double most)
 /* The position of a setting in the order of within.c, from 1; 0: it gives up nothing. */
 static uint32_t rank_of(uint32_t knob, uint32_t setting)
 {
-    uint32_t count;
-    const struct knob *k = &knob_table(&count)[knob];
+    const struct knob *k = &knob_table[knob];
     return cost_step_of(k->name, knob_setting_name(k, setting)) + 1;
 }
 
@@ -27,8 +26,7 @@ static uint32_t rank_of(uint32_t knob, uint32_t setting)
    settings better than usual, shorter the later in the order a setting is. */
 static double ratio_of(uint32_t knob, uint32_t setting)
 {
-    uint32_t count;
-    const struct knob *k = &knob_table(&count)[knob];
+    const struct knob *k = &knob_table[knob];
     double samples = strtod(knob_setting_name(k, setting), NULL);
     uint32_t rank = rank_of(knob, setting);
     if (strcmp(k->name, "aa") == 0)
@@ -38,8 +36,7 @@ static double ratio_of(uint32_t knob, uint32_t setting)
 
 static void add_row(uint32_t knob, uint32_t setting, uint32_t samples)
 {
-    uint32_t count;
-    const struct knob *k = &knob_table(&count)[knob];
+    const struct knob *k = &knob_table[knob];
     struct cost_row *row = &report.rows[report.row_count++];
     double ratio = ratio_of(knob, setting);
     bool told_apart = splitmix64(&random_state) % 8 > 0;
@@ -58,8 +55,6 @@ static void add_row(uint32_t knob, uint32_t setting, uint32_t samples)
 
 static void make_report(void)
 {
-    uint32_t count;
-    const struct knob *table = knob_table(&count);
     memset(&report, 0, sizeof report);
     report.clock = COST_WALL;
     report.reference_samples = 16;
@@ -71,11 +66,12 @@ static void make_report(void)
                                        .error = {.pixel_count = 1, .rmse = 0.1},
                                        .alone = {.pixel_count = 1, .rmse = 0.01}};
     report.row_count = 1;
-    for (uint32_t k = 0; k < count; ++k) {
-        bool samples = strcmp(table[k].name, "aa") == 0;
-        for (uint32_t s = 0; s < table[k].count && knobs_of_light() >> k & 1; ++s)
-            if (s != table[k].usual && (!samples || s < 3))
-                add_row(k, s, samples ? (uint32_t)strtoul(table[k].settings[s].text, NULL, 10) : 0);
+    for (uint32_t k = 0; k < KNOBS; ++k) {
+        bool samples = strcmp(knob_table[k].name, "aa") == 0;
+        for (uint32_t s = 0; s < knob_table[k].count && knobs_of_light() >> k & 1; ++s)
+            if (s != knob_table[k].usual && (!samples || s < 3))
+                add_row(k, s,
+                        samples ? (uint32_t)strtoul(knob_table[k].settings[s].text, NULL, 10) : 0);
     }
 }
 
@@ -99,9 +95,8 @@ static bool saves_time(const struct cost_row *row)
    save time are given up, too. */
 static uint32_t check_order(const struct cost_choice *choice)
 {
-    uint32_t last = 0, count;
-    knob_table(&count);
-    for (uint32_t k = 0; k < count; ++k) {
+    uint32_t last = 0;
+    for (uint32_t k = 0; k < KNOBS; ++k) {
         uint32_t rank = rank_of(k, choice->settings[k]);
         last = rank > last ? rank : last;
     }

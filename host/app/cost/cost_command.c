@@ -25,19 +25,17 @@ static const struct setting_value values_reference_samples[] = {
 
 static bool read_knobs(const struct setting *setting, const char *list, void *record, char *why)
 {
-    const char *names[64];
-    uint32_t count;
-    const struct knob *table = knob_table(&count);
+    const char *names[KNOBS];
     (void)setting;
-    for (uint32_t i = 0; i < count; ++i)
-        names[i] = table[i].name;
+    for (uint32_t i = 0; i < KNOBS; ++i)
+        names[i] = knob_table[i].name;
     for (const char *at = list; at;) {
         char name[32];
         size_t length = strcspn(at, ",");
         snprintf(name, sizeof name, "%.*s", (int)(length < 31 ? length : 31), at);
         uint32_t found = knob_find(name);
         if (found == WHIT_NONE) {
-            const char *nearest = text_nearest(name, names, count);
+            const char *nearest = text_nearest(name, names, KNOBS);
             return setting_refuse(why, ": there is no knob `%s`%s%s%s", name,
                                   nearest ? "; did you mean `" : "", nearest ? nearest : "",
                                   nearest ? "`?" : "");
@@ -290,9 +288,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
 
 static const char *knob_word(const char *option, uint32_t index)
 {
-    uint32_t count;
-    const struct knob *knobs = knob_table(&count);
-    return strcmp(option, "knobs") == 0 && index < count ? knobs[index].name : NULL;
+    return strcmp(option, "knobs") == 0 && index < KNOBS ? knob_table[index].name : NULL;
 }
 
 const struct cli_command command_cost = {

@@ -249,16 +249,13 @@ static void read_hits(const json_t *object, struct cost_hits *hits)
 /* Finds the knob and setting by the names in `row`, or neither of the two. */
 static void find_setting(struct cost_row *row)
 {
-    uint32_t count, index = knob_find(row->knob);
-    const struct knob *table = knob_table(&count);
-    row->knob_index = row->setting_index = WHIT_NONE;
-    for (uint32_t s = 0; index != WHIT_NONE && s < table[index].count; ++s) {
-        if (strcmp(knob_setting_name(&table[index], s), row->setting) == 0) {
-            row->knob_index = index;
-            row->setting_index = s;
-            row->change = knob_change(&table[index]);
-        }
-    }
+    uint32_t knob = knob_find(row->knob);
+    uint32_t setting =
+        knob == WHIT_NONE ? WHIT_NONE : knob_find_setting(&knob_table[knob], row->setting);
+    row->knob_index = setting == WHIT_NONE ? WHIT_NONE : knob;
+    row->setting_index = setting;
+    if (setting != WHIT_NONE)
+        row->change = knob_change(&knob_table[knob]);
 }
 
 static void read_row(const json_t *object, struct cost_row *row)

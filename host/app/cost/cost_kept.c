@@ -66,8 +66,6 @@ void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice
 
 static void put_choice(json_t *out, const struct cost_kept_choice *kept)
 {
-    uint32_t count;
-    const struct knob *table = knob_table(&count);
     document_number(out, "budget_ms", kept->budget_ms);
     document_number(out, "tried_ms", kept->tried_ms);
     document_number(out, "predicted_ms", kept->choice.ms);
@@ -76,9 +74,9 @@ static void put_choice(json_t *out, const struct cost_kept_choice *kept)
     document_number(out, "contrast", kept->choice.contrast);
     document_count(out, "samples_most", kept->choice.samples_most);
     json_t *settings = document_child(out, "settings");
-    for (uint32_t k = 0; k < count; ++k)
-        document_text(settings, table[k].name,
-                      knob_setting_name(&table[k], kept->choice.settings[k]));
+    for (uint32_t k = 0; k < KNOBS; ++k)
+        document_text(settings, knob_table[k].name,
+                      knob_setting_name(&knob_table[k], kept->choice.settings[k]));
 }
 
 void cost_kept_save(const struct cost_kept *kept)
@@ -100,8 +98,6 @@ void cost_kept_save(const struct cost_kept *kept)
 
 static bool read_choice(const json_t *object, struct cost_kept_choice *kept)
 {
-    uint32_t count;
-    const struct knob *table = knob_table(&count);
     const json_t *settings = json_object_get(object, "settings");
     kept->budget_ms = document_read_number(object, "budget_ms", 0.0);
     kept->tried_ms = document_read_number(object, "tried_ms", 0.0);
@@ -109,12 +105,10 @@ static bool read_choice(const json_t *object, struct cost_kept_choice *kept)
     kept->choice.error = document_read_number(object, "predicted_error", 0.0);
     json_int_t samples = json_integer_value(json_object_get(object, "samples")),
                most = json_integer_value(json_object_get(object, "samples_most"));
-    for (uint32_t k = 0; k < count; ++k) {
-        const char *text = json_string_value(json_object_get(settings, table[k].name));
-        uint32_t s = 0;
-        while (text && s < table[k].count && strcmp(knob_setting_name(&table[k], s), text) != 0)
-            ++s;
-        if (!text || s == table[k].count)
+    for (uint32_t k = 0; k < KNOBS; ++k) {
+        const char *text = json_string_value(json_object_get(settings, knob_table[k].name));
+        uint32_t s = text ? knob_find_setting(&knob_table[k], text) : WHIT_NONE;
+        if (s == WHIT_NONE)
             return false;
         kept->choice.settings[k] = (uint8_t)s;
     }
