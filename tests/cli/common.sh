@@ -88,13 +88,19 @@ wait_for() {
     done
 }
 
-# shows WHAT PATTERN ARGUMENT...: whit exits with 0, and standard output has a line with PATTERN.
-shows() {
-    what=$1
-    pattern=$2
-    shift 2
-    expect 0 "$what" "$@"
+# gives CODE WHAT PATTERN ARGUMENT...: whit exits with CODE, and standard output has a line with PATTERN.
+gives() {
+    code=$1
+    what=$2
+    pattern=$3
+    shift 3
+    expect "$code" "$what" "$@"
     check "$what: shows \`$pattern\`" grep -q -e "$pattern" "$OUT/stdout"
+}
+
+# shows WHAT PATTERN ARGUMENT...: it does so with exit code 0.
+shows() {
+    gives 0 "$@"
 }
 
 # interrupted PID COMMAND...: sends Ctrl+C once the command succeeds; the process then ends with exit code 130.

@@ -11,3 +11,11 @@ value() {
         NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i }
         $at["knob"] == knob && $at["setting"] == setting { print $at[column] }'
 }
+
+# wrong FAULT COMMAND...: runs the command by a whit with that fault.
+wrong() {
+    export WHIT_TEST_WRONG="$1"
+    shift
+    "$@"
+    unset WHIT_TEST_WRONG
+}

@@ -86,8 +86,7 @@ check "nothing is distinguishable" \
     test "$(grep -c 'dearer in\|cheaper in' "$OUT/stdout")" -eq 0
 jq '(.rows[] | select(.knob == "aa" and .setting == "4").price) |= (.width = 7 | .height = 5 |
     (.cpu, .wall | objects).ratio |= {median: 9, low: 8, high: 10, coverage: 0.95})' "$J" >"$OUT/files/smaller.json"
-expect 0 "compared with smaller pictures" cost --compare "$J" "$OUT/files/smaller.json"
-check "no change is told where the sizes differ" grep -q "^aa  *4 .* timed at other sizes " "$OUT/stdout"
+shows "compared with smaller pictures" "^aa  *4 .* timed at other sizes " cost --compare "$J" "$OUT/files/smaller.json"
 check "the CSV has the sizes" test "$(value "$C" aa 4 width) $(value "$C" aa 4 height)" = \
     "$(jq -r '.rows[] | select(.knob == "aa" and .setting == "4").price | "\(.width) \(.height)"' "$J")"
 check "samples that the reference has not are not here" grep -q \
@@ -153,15 +152,11 @@ if part 1 2; then
     check "takes the most samples" grep -q "^whit: note: chosen: --aa 64.*; predicted" "$OUT/stderr"
     most=$(chosen)
     check "says what it took" grep -q "^whit: note: it took [0-9.]* of 1e+06 ms$" "$OUT/stderr"
-    export WHIT_TEST_WRONG=compile
-    expect 0 "kernels that take that time" render $enough
-    unset WHIT_TEST_WRONG
+    wrong compile expect 0 "kernels that take that time" render $enough
     check "are no part of it" test "$(grep -c "it will take" "$OUT/stderr")" -eq 0
     # A choice whose tries took too long is tried again.
-    export WHIT_TEST_WRONG=noisy
-    expect 0 "a time that slow tries exceed" render $tiny --budget-ms 160
+    wrong noisy expect 0 "a time that slow tries exceed" render $tiny --budget-ms 160
     check "says so" grep -q "it is likely to take more than 160 ms" "$OUT/stderr"
-    unset WHIT_TEST_WRONG
     expect 0 "the next run" render $tiny --budget-ms 160
     check "tries again" grep -q "; predicted: 135.0 ms" "$OUT/stderr"
     expect 0 "an error that one sample has" render $tiny --max-error 0.9
@@ -203,9 +198,7 @@ if [ "${4:-}" = all ]; then
     expect 0 "tiles of another size" render $tiny --tile-size 16
     check "have figures of their own" grep -q "measuring what settings cost" "$OUT/stderr"
     # The second run makes the same choice, even if it is slower.
-    export WHIT_TEST_WRONG=noisy
-    expect 0 "the second run" render $tiny
-    unset WHIT_TEST_WRONG
+    wrong noisy expect 0 "the second run" render $tiny
     check "makes the same choice ($(chosen))" test "$(chosen)" = "$first"
     check "and says by which figures" grep -q "^whit: note: by figures of 20.* UTC, $kept" "$OUT/stderr"
     check "it is not measured again" test "$(grep -c "measuring" "$OUT/stderr")" -eq 0
@@ -223,30 +216,24 @@ if [ "${4:-}" = all ]; then
     check "gets the same edges" test "$(chosen)" = "$edges"
 
     # By the slowest of ten pictures no choice is predicted to take at most 150 ms, but the usual settings do.
-    export WHIT_TEST_WRONG=noisy
-    expect 0 "--within what only a row of the table keeps" cost "$CUBE" $small --reference-samples 4 \
+    wrong noisy expect 0 "--within what only a row of the table keeps" cost "$CUBE" $small --reference-samples 4 \
         --knobs aa,numerics --within 150 --json "$J"
     check "gets that row" grep -q "^Best picture within 150 ms: the usual settings. .*: kept" "$OUT/stdout"
     check "the sentence does not say that exact hits are free" jq -e \
         '.sentence | contains("exact hits cost at most 200 %, as closely as")' "$J"
     check "as the JSON says" jq -e '.answers[0] | .kept and .row == 0 and .predicted_ms < 150' "$J"
-    unset WHIT_TEST_WRONG
 fi
 
 # ---- A fault shows in its row ----
 
-export WHIT_TEST_WRONG=schlick
-run cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$D"
-unset WHIT_TEST_WRONG
+wrong schlick run cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$D"
 right=$(value "$C" fresnel schlick alone_rmse) biased=$(value "$D" fresnel schlick alone_rmse)
 check "a biased Schlick: its error grows ($right to $biased)" holds "$biased > 1.5 * $right"
 check "and no other" test "$(value "$C" usual "" alone_rmse)" = "$(value "$D" usual "" alone_rmse)"
 
 if part 0 2; then
-    export WHIT_TEST_WRONG=triangle
-    refuse 1 "a wrong triangle" "build median: it may change nothing" \
+    wrong triangle refuse 1 "a wrong triangle" "build median: it may change nothing" \
         cost "$CUBE" $small --reference-samples 4 --knobs build,traversal --csv "$D"
-    unset WHIT_TEST_WRONG
     check "its row says so" grep -q "^build  *median .*NOT THE SAME" "$OUT/stdout"
     check "no other does" test "$(grep -c "NOT THE SAME" "$OUT/stdout")" -eq 1
     # (render_test.sh has a right tree by medians.)
@@ -261,17 +248,13 @@ if part 0 2; then
         holds "$(value "$D" build median aimed_wrong) > $(value "$D" usual "" aimed_wrong)"
 fi
 
-export WHIT_TEST_WRONG=waits
-run cost "$CUBE" $small --reference-samples 4 --knobs build,numerics --rays 0
-unset WHIT_TEST_WRONG
+wrong waits run cost "$CUBE" $small --reference-samples 4 --knobs build,numerics --rays 0
 check "builds and pictures are compared by one clock" grep -q \
     "^build median: 1.0 ms to build beside 9.0; dearer from 1 picture on, by the wall clock" "$OUT/stdout"
 check "without rays no hits are called as right" test "$(grep -c \
     "^numerics .* best\|\(as right\|more right)\): .*numerics" "$OUT/stdout")" -eq 0
 
-export WHIT_TEST_WRONG=slow
-run cost "$GLASS" $small --reference-samples 4 --knobs depth --rays 0 --csv "$D"
-unset WHIT_TEST_WRONG
+wrong slow run cost "$GLASS" $small --reference-samples 4 --knobs depth --rays 0 --csv "$D"
 check "10 % more work is found" test "$(value "$D" depth 16 ratio)$(value "$D" depth 16 verdict)" = 1.11
 check "and in no other row" test "$(value "$D" depth 4 ratio)$(value "$D" depth 4 verdict)" = 10
 WHIT=$RIGHT

@@ -15,14 +15,12 @@ D=$OUT/files/slow.csv
 sed 's/"specular": 0.3/"reflection": 0.3/' "$CUBE" >"$OUT/mirror.json"
 deep="$OUT/mirror.json --size 160x120 --quick --rays 0 --quiet --knobs depth --reference-samples 4 --spend 8"
 expect 0 "as it is" cost $deep --csv "$C"
-export WHIT_TEST_WRONG=slow
-expect 0 "10 % slower" cost $deep --csv "$D"
+wrong slow expect 0 "10 % slower" cost $deep --csv "$D"
 right=$(value "$C" depth 16 ratio) slowed=$(value "$D" depth 16 ratio)
 check "16 bounces cost about what 8 do (x $right)" holds "0.9 < $right && $right < 1.1"
 check "10 % more work is found (x $slowed)" test "$(value "$D" depth 16 verdict)" = 1
 check "about as much as it is" holds "0.05 < $slowed - $right && $slowed - $right < 0.15"
 check "and in no other row" test "$(value "$D" depth 4 verdict)" != 1
-unset WHIT_TEST_WRONG
 
 WHIT=$PLAIN # which has whit-bench beside it
 [ -x "$(dirname "$WHIT")/whit-bench" ] || finish
