@@ -3,7 +3,6 @@
 #define _GNU_SOURCE
 #include "app/arguments.h"
 
-#include <ctype.h>
 #include <getopt.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -206,7 +205,7 @@ static struct option *long_options(const struct cli_command *command,
 /* Reports the word in argv that getopt did not understand. */
 static void unknown_option(struct cli_reader *reader)
 {
-    if (optopt > 0 && optopt < 128 && isprint(optopt) && !find_option(reader->command, optopt)) {
+    if (optopt && optopt < ID_FIRST && !find_option(reader->command, optopt)) {
         cli_misuse(reader, "there is no option `-%c`", optopt);
         return;
     }

@@ -28,7 +28,9 @@ void job_init(struct job *job, const struct cli_command *command);
 /* Reads all options, checks that settings go together, and takes the first argument as the scene;
    `optional`: it may be missing. */
 bool job_read(struct job *job, struct cli_reader *reader, void *own, bool optional);
-/* Prepares the caches and starts the clock of --time-limit. */
+/* Prepares caches and drivers by environment variables, of which those that are set stay as they
+   are, and starts the clock of --time-limit. Call it before threads are started and before
+   Vulkan. */
 void job_start(const struct job *job);
 
 /* Starts to open the device in a thread, for which job_open_device waits. Errors are printed there,

@@ -89,33 +89,43 @@ static bool name_picture(const char *path, char *out, size_t bytes)
     return !is_file(out);
 }
 
+/* Whether options behind the file say where the picture goes. */
+static bool names_output(int argc, char **argv)
+{
+    for (int i = 2; i < argc; ++i) {
+        if (strncmp(argv[i], "-o", 2) == 0 || strncmp(argv[i], "--o", 3) == 0)
+            return true;
+    }
+    return false;
+}
+
 /* Runs `whit FILE [options]` or `whit -` as `whit view` where there is a display, and as `whit
    render` where there is none. */
 static int open_file(int argc, char **argv)
 {
     char picture[4096], render[] = "render", output[] = "-o", view[] = "view";
     char **words = calloc((size_t)argc + 4, sizeof *words);
+    bool shows = has_display();
     int count = 0;
     if (!words)
         return cli_exit_of(WHIT_ERROR_MEMORY);
-    const struct cli_command *command = find_command(has_display() ? view : render);
-    words[count++] = has_display() ? view : render;
+    words[count++] = shows ? view : render;
     for (int i = 1; i < argc; ++i)
         words[count++] = argv[i];
-    if (!has_display()) {
+    if (!shows && !names_output(argc, argv)) {
         if (!name_picture(argv[1], picture, sizeof picture)) {
-            cli_error(
-                "there is no display, and `%s` is there already: name another by `whit render "
-                "%s -o FILE`",
-                picture, argv[1]);
             free(words);
-            return EXIT_USAGE;
+            return CLI_FAIL(EXIT_USAGE,
+                            "there is no display, and `%s` is there already: name another by "
+                            "`whit render %s -o FILE`",
+                            picture, argv[1]);
         }
         cli_note("there is no display: rendering %s", picture);
         words[count++] = output;
         words[count++] = picture;
     }
     cli_catch_interrupts();
+    const struct cli_command *command = find_command(words[0]);
     int status = command->run(command, count, words);
     free(words);
     return status;

@@ -13,7 +13,7 @@ foreach(command check cost)
 endforeach()
 # The program. Its library is called libwhit (host/api/module.cmake), so the target has another name.
 add_executable(whit_program
-  app/arguments.c app/cache.c app/cli.c app/describe.c app/document.c app/drivers.c app/ends.c app/job.c app/main.c
+  app/arguments.c app/cache.c app/cli.c app/describe.c app/document.c app/ends.c app/job.c app/main.c
   app/page.c app/settings_json.c ${page_sources}
   app/bench/bench_command.c app/bench/request.c
   app/bvh/bvh_command.c app/bvh/study.c app/bvh/study_output.c app/bvh/study_rays.c
@@ -37,7 +37,7 @@ add_executable(whit_program
   app/render/render_command.c app/render/repeat.c app/render/resume.c
   app/render/stats.c app/render/view_image.c app/render/cameras.c
   app/scene/kernels.c app/scene/listing.c app/scene/listing_output.c app/scene/receipt.c
-  app/scene/receipt_output.c app/scene/scene_command.c app/scene/triangles.c
+  app/scene/scene_command.c app/scene/triangles.c
   app/shader/attempt.c app/shader/extract.c app/shader/shader_command.c
   app/trace/ray_file.c app/trace/trace_command.c)
 set_target_properties(whit_program PROPERTIES

@@ -52,8 +52,9 @@ expect 0 "a picture at fast" hard $V --numerics fast -o "$OUT/fast.png" --quiet
 red=$(sed -n 's/.*: fast: \([0-9]*\) pixels wrong.*/\1/p' "$OUT/stdout")
 check "has leaks in it ($red)" test "$red" -gt 0
 shows "a picture at watertight" ": watertight: 0 pixels wrong" hard $V -o "$OUT/watertight.png" --quiet
-expect 0 "a picture of a scene" hard "$CUBE" --view leaks --size 64x48 -o "$OUT/cube.pfm" --quiet
-check "is of that size" test "$(head -c 8 "$OUT/cube.pfm" | tr '\n' ' ')" = "PF 64 48"
+expect 0 "a picture of a scene" hard "$CUBE" --view leaks --size 64x48 -o "$(printf "$OUT/\033.pfm")" --quiet
+check "its name steers no terminal" grep -q '/\\u001b.pfm: watertight' "$OUT/stdout"
+check "is of that size" test "$(head -c 8 "$(printf "$OUT/\033.pfm")" | tr '\n' ' ')" = "PF 64 48"
 
 rm "$J"
 refuse 2 "too few rays" "from 512 to" hard --rays 10

@@ -111,7 +111,8 @@ rm -r p.0.png p.1.png
 
 # Standard output that cannot be written.
 if [ -c /dev/full ]; then
-    for command in "scene $CUBE" "scene $CUBE --json" "devices --json" "bvh $CUBE --no-trace --runs 1" \
+    echo 'vec3 post(ivec2 at, vec3 color) { return color; }' >post.glsl
+    for command in "shader post.glsl" "shader post.glsl --json" "scene $CUBE" "scene $CUBE --json" "devices --json" "bvh $CUBE --no-trace --runs 1" \
         "render --help" "render $CUBE --size 8x8 -o ok.pfm --stats json" "--version"; do
         "$WHIT" $command >/dev/full 2>"$OUT/stderr"
         status=$?
@@ -119,7 +120,7 @@ if [ -c /dev/full ]; then
         check "$command: says so" \
             grep -q "^whit: error: standard output: cannot write: No space" "$OUT/stderr"
     done
-    rm -f ok.pfm
+    rm -f ok.pfm post.glsl
 fi
 check "nothing is left" is_empty .
 finish

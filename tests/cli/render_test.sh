@@ -163,6 +163,9 @@ cp "$OUT/alone/some.cube.png" "$OUT/alone/kept"
 alone some.cube.json --size 9x9
 check "what is there is kept (got $status)" \
     sh -c 'test "$1" -eq 2 && cmp "$2/kept" "$2/some.cube.png"' - "$status" "$OUT/alone"
+alone some.cube.json --size 8x8 -o mine.png
+check "another name is taken (got $status)" test "$status" -eq 0 -a -s "$OUT/alone/mine.png"
+check "and nothing said of this one" test "$(grep -c some.cube.png "$OUT/stderr")" -eq 0
 alone nothing.json
 check "what is no file is no command (got $status)" test "$status" -eq 2
 check "and said" grep -q "there is no command .nothing.json." "$OUT/stderr"

@@ -30,6 +30,8 @@ refuse 2 "unknown option" "whit render --help" render "$CUBE" -o "$P" --paint
 refuse 2 "misspelt option" "did you mean .--camera." render "$CUBE" -o "$P" --camrea 1
 refuse 2 "value missing" "needs a value" render "$CUBE" -o "$P" --size
 refuse 2 "value not wanted" "takes no value" render "$CUBE" -o "$P" --quiet=yes
+refuse 2 "a letter of two bytes" 'there is no option `-.xc3`' render "$CUBE" -o "$P" -é
+refuse 2 "too long a name of functions" "FILE: 400 bytes are too long" shader "$(printf '%0400d' 0)"
 for size in 0x10 10x0 10 x 10x10x10 -5x5 99999x10 10x 1e2x10; do
     refuse 2 "--size $size" "WxH" render "$CUBE" -o "$P" --size "$size"
 done

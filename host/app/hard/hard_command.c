@@ -96,7 +96,7 @@ static int work_view(struct hard *hard)
     printf(
         "%s: %s: %llu pixel%s wrong (red), %llu with another triangle within the error of floats "
         "(yellow)\n",
-        hard->output, value_word(values_numerics, (int)hard->view.numerics),
+        cli_shown(hard->output), value_word(values_numerics, (int)hard->view.numerics),
         (unsigned long long)wrong, wrong == 1 ? "" : "s", (unsigned long long)other);
     int status = cli_finish_stdout(EXIT_FINE);
     if (status == EXIT_FINE && wrong && hard->view.numerics != WHIT_NUMERICS_FAST)

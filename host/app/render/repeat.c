@@ -31,23 +31,6 @@ const char *repeat_picture(const struct cli_reader *reader, const struct repeat 
     return is_picture ? reader->positional : NULL;
 }
 
-/* ---- Texts ---- */
-
-const char *repeat_text(const char *picture, const whit_load_params *params, const char *key,
-                        whit_text **texts)
-{
-    uint32_t count;
-    if (whit_image_load_texts(picture, params, &cli_log, texts, &count) != WHIT_OK)
-        return NULL;
-    const char *text = recipe_text(*texts, count, key);
-    if (text)
-        return text;
-    cli_error("%s: a picture without `%s` in it", picture, key);
-    whit_memory_destroy(*texts);
-    *texts = NULL;
-    return NULL;
-}
-
 /* ---- The command in it ---- */
 
 static bool split(struct recipe_read *recipe, const char *command, char *argv[], int *argc)

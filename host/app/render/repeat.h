@@ -37,9 +37,4 @@ const char *repeat_picture(const struct cli_reader *reader, const struct repeat 
 bool repeat_read(struct job *job, struct cli_reader *reader, void *own, const struct repeat *repeat,
                  int argc, char **argv);
 
-/* The text that a picture carries under `key`, which lives in *texts, for whit_memory_destroy.
-   NULL, with a message: the picture cannot be read, or has no such text. */
-const char *repeat_text(const char *picture, const whit_load_params *params, const char *key,
-                        whit_text **texts);
-
 #endif

@@ -1,7 +1,7 @@
 /* `whit scene --kernels`: the kernels of a picture, and what the device's driver tells of them. */
-#include "app/scene/kernels.h"
 #include "app/document.h"
 #include "app/render/stats.h"
+#include "app/scene/listing.h"
 #include "app/settings_json.h"
 
 enum { LINE_WIDTH = 100 };

@@ -1,4 +1,4 @@
-/* The lists of `whit scene`: as text, as JSON, as triangles. */
+/* The listings of `whit scene`. */
 #ifndef APP_SCENE_LISTING_H
 #define APP_SCENE_LISTING_H
 
@@ -8,6 +8,11 @@
 int listing_print_text(const struct job *job, const whit_scene_info *info, bool all);
 /* listing_output.c */
 int listing_print_json(const struct job *job, const whit_scene_info *info);
+
+/* kernels.c, receipt.c: --kernels and --effects, which measure on the device and print; the exit
+   code. EXIT_DIFFERS where an effect that the scene does not call for changes the picture. */
+int kernels_run(struct job *job, bool json);
+int receipt_run(struct job *job, bool json);
 
 /* triangles.c: writes all triangles of the scene at `time_s` to the file `path`. Errors were
    printed. */

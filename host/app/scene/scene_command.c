@@ -1,8 +1,6 @@
 #include "app/arguments.h"
 #include "app/commands.h"
-#include "app/scene/kernels.h"
 #include "app/scene/listing.h"
-#include "app/scene/receipt.h"
 
 struct scene_request {
     const char *triangles; /* NULL: none */

@@ -3,9 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/cache.h"
-#include "app/drivers.h"
-
 /* Size in pixels of the picture in which expectations are checked. */
 enum { WIDTH = 160, HEIGHT = 120 };
 
@@ -92,8 +89,7 @@ whit_result attempt_make(struct job *job, const char *scene, struct attempt *att
     const whit_shader_info *info = &attempt->info;
     whit_shader_get_info(job->shader, &attempt->info);
     bool needs = info->test_count || info->expectation_count;
-    cache_prepare(job->settings.no_cache);
-    drivers_prepare();
+    job_start(job);
     if (!needs && !has_device()) {
         cli_note("there is no device: kernels are not tried");
         return WHIT_OK;

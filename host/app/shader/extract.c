@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "app/render/repeat.h"
+#include "app/render/recipe.h"
 #include "base/file.h"
 #include "base/path.h"
 
@@ -116,21 +116,36 @@ static int write_folder(const char *folder, const whit_shader_file *files, uint3
     return cli_finish_stdout(EXIT_FINE);
 }
 
+/* Gives the files that the picture carries, for whit_memory_destroy. */
+static whit_result unpack(const char *picture, const whit_load_params *params,
+                          whit_shader_file **files, uint32_t *count)
+{
+    whit_text *texts;
+    uint32_t text_count;
+    whit_result result = whit_image_load_texts(picture, params, &cli_log, &texts, &text_count);
+    if (result != WHIT_OK)
+        return result;
+    const char *packed = recipe_text(texts, text_count, WHIT_SHADER_KEY);
+    if (packed)
+        result = whit_shader_unpack(packed, picture, &cli_log, files, count);
+    else
+        result = CLI_FAIL(WHIT_ERROR_INPUT, "%s: a picture without `" WHIT_SHADER_KEY "` in it",
+                          picture);
+    whit_memory_destroy(texts);
+    return result;
+}
+
 int extract_run(const char *picture, const char *into, const whit_load_params *params)
 {
     char folder[PATH_BYTES];
-    whit_text *texts;
     whit_shader_file *files;
     uint32_t count;
     if (!name_folder(picture, into, folder))
         return EXIT_USAGE;
-    const char *packed = repeat_text(picture, params, WHIT_SHADER_KEY, &texts);
-    if (!packed)
-        return EXIT_USAGE;
-    whit_result result = whit_shader_unpack(packed, picture, &cli_log, &files, &count);
-    whit_memory_destroy(texts);
-    int status = result == WHIT_OK ? write_folder(folder, files, count) : cli_exit_of(result);
-    if (result == WHIT_OK)
-        whit_memory_destroy(files);
+    whit_result result = unpack(picture, params, &files, &count);
+    if (result != WHIT_OK)
+        return cli_exit_of(result);
+    int status = write_folder(folder, files, count);
+    whit_memory_destroy(files);
     return status;
 }

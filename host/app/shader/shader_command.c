@@ -176,10 +176,7 @@ static int print_json(const whit_shader *shader, const struct attempt *attempt)
     document_count(object, "fuel", info.fuel);
     document_hash(object, "hash", info.hash);
     attempt_describe(attempt, object);
-    char *text = document_lines(object);
-    puts(text);
-    free(text);
-    return attempt_status(attempt);
+    return cli_print_json(object);
 }
 
 /* Writes FOLDER/NAMEENDING, unless the shader was read from there. */
@@ -258,11 +255,12 @@ static int examine(struct job *job, const struct shader_options *request, const 
     if (result == WHIT_OK && !request->json) {
         print_text(job->shader, path);
         attempt_print(&attempt);
-        status = attempt_status(&attempt);
+        status = cli_finish_stdout(EXIT_FINE);
     }
-    fflush(stdout);
     if (result == WHIT_OK)
         attempt_say(&attempt);
+    if (status == EXIT_FINE)
+        status = attempt_status(&attempt);
     attempt_finish(&attempt);
     if (request->dump && dump(job->shader, request->dump) != WHIT_OK)
         status = EXIT_USAGE;
@@ -274,6 +272,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     struct cli_reader reader;
     struct shader_options request = {0};
     struct job *job = &request.job;
+    char why[SETTING_WHY_BYTES];
     job_init(job, command);
     cli_reader_init(&reader, command, argc, argv);
     if (!cli_read(&reader, &request, &job->settings))
@@ -288,7 +287,8 @@ static int run(const struct cli_command *command, int argc, char **argv)
         return CLI_MISUSE(&reader,
                           "one FILE is needed, or `new` and the name of a function, or `extract` "
                           "and a picture");
-    snprintf(job->settings.shader, sizeof job->settings.shader, "%s", reader.positional);
+    if (!settings_read(settings_row("shader"), reader.positional, &job->settings, why))
+        return CLI_MISUSE(&reader, "FILE%s", why);
     whit_result result = job_load_shader(job);
     int status =
         result == WHIT_OK ? examine(job, &request, reader.positional) : cli_exit_of(result);
