@@ -15,12 +15,10 @@
 
 static whit_result check_params(const whit_log *log, const whit_accel_params *params)
 {
-    if (params->instance_build != WHIT_BUILD_BINNED &&
-        params->instance_build != WHIT_BUILD_MEDIAN) {
-        log_error(log, "instances: binned and median are the builders there are, not %d",
-                  (int)params->instance_build);
-        return WHIT_ERROR_USAGE;
-    }
+    if (params->instance_build != WHIT_BUILD_BINNED && params->instance_build != WHIT_BUILD_MEDIAN)
+        return API_FAIL(log, WHIT_ERROR_USAGE,
+                        "instances: binned and median are the builders there are, not %d",
+                        (int)params->instance_build);
     whit_result result = bvh_check(log, params);
     return result == WHIT_OK ? api_check_instances(log, params->instances) : result;
 }
@@ -36,10 +34,8 @@ whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *
     if (result != WHIT_OK)
         return result;
     whit_accel *accel = calloc(1, sizeof *accel);
-    if (!accel) {
-        log_error(&scene->log, "out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!accel)
+        return API_FAIL(&scene->log, WHIT_ERROR_MEMORY, "out of memory");
     accel->params = *params;
     accel->log = scene->log;
     whit_accel_params inner = *params;
@@ -144,18 +140,15 @@ whit_result whit_accel_boxes(const whit_accel *accel, double time_s, bool over_i
     *total = 0;
     whit_result result = scene_pose_init(accel->accel->scene, time_s, &pose);
     if (result == WHIT_OK && accel->accel->scene->channel_count > 0 &&
-        accel->accel->posed_s != time_s) {
-        log_error(&accel->log, "boxes at %g s: the trees are posed at %g s", time_s,
-                  accel->accel->posed_s);
-        result = WHIT_ERROR_USAGE;
-    }
+        accel->accel->posed_s != time_s)
+        result =
+            API_FAIL(&accel->log, WHIT_ERROR_USAGE, "boxes at %g s: the trees are posed at %g s",
+                     time_s, accel->accel->posed_s);
     if (result == WHIT_OK)
         accel_boxes(accel->accel, &pose, over_instances, level, add_box, &list);
     scene_pose_finish(&pose);
-    if (list.failed) {
-        log_error(&accel->log, "out of memory for the boxes of trees");
-        result = WHIT_ERROR_MEMORY;
-    }
+    if (list.failed)
+        result = API_FAIL(&accel->log, WHIT_ERROR_MEMORY, "out of memory for the boxes of trees");
     if (result != WHIT_OK) {
         free(list.boxes);
         return result;

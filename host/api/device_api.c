@@ -11,15 +11,13 @@ whit_result whit_device_list(const whit_log *log, whit_device_info **infos, uint
     return device_list(log, infos, count);
 }
 
-static whit_result open_device(const whit_device_params *params, const whit_log *log,
+whit_result whit_device_create(const whit_device_params *params, const whit_log *log,
                                whit_device **out)
 {
     *out = NULL;
     whit_device *device = calloc(1, sizeof *device);
-    if (!device) {
-        log_error(log, "out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!device)
+        return API_FAIL(log, WHIT_ERROR_MEMORY, "out of memory");
     device->log = log_or_silence(log);
     whit_result result = device_create(&device->log, params, NULL, &device->device);
     if (result != WHIT_OK) {
@@ -28,12 +26,6 @@ static whit_result open_device(const whit_device_params *params, const whit_log 
     }
     *out = device;
     return WHIT_OK;
-}
-
-whit_result whit_device_create(const whit_device_params *params, const whit_log *log,
-                               whit_device **out)
-{
-    return open_device(params, log, out);
 }
 
 /* ---- In a thread ---- */
@@ -114,7 +106,7 @@ struct whit_device_opening {
 static void open_in_thread(void *context)
 {
     whit_device_opening *opening = context;
-    opening->result = open_device(&opening->params, &opening->log, &opening->device);
+    opening->result = whit_device_create(&opening->params, &opening->log, &opening->device);
 }
 
 whit_device_opening *whit_device_open_begin(const whit_device_params *params, const whit_log *log)

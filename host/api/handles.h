@@ -24,9 +24,10 @@ static inline bool api_one_tree(const struct whit_scene *scene, whit_instances i
     return instances == WHIT_INSTANCES_OFF || (instances == WHIT_INSTANCES_AUTO && scene->one_tree);
 }
 
-/* Completes a new handle: pose, effects, and whether it gets one tree. `result`: of making its
-   scene. On failure destroys the handle. */
-WHIT_CHECK whit_result api_complete_scene(whit_scene *scene, whit_result result, whit_scene **out);
+/* Hands out `made` behind a handle with pose and effects, and *out = NULL on errors. `result`: of
+   making it; after a failure there is no `made`. */
+WHIT_CHECK whit_result api_hand_out_scene(const whit_log *log, struct scene *made,
+                                          whit_result result, whit_scene **out);
 
 struct whit_accel {
     whit_accel_params params; /* as given to whit_accel_create */
@@ -48,6 +49,10 @@ struct whit_renderer {
     whit_renderer_params params; /* strings in it may be gone, and are not read */
     whit_log log;
 };
+
+/* Logs an error and gives `result`, so that it can be returned. It is a macro so that compilers see
+   what it gives. */
+#define API_FAIL(log, result, ...) (log_error((log), __VA_ARGS__), (result))
 
 /* WHIT_ERROR_USAGE, logged, for a value that the enumeration does not have. */
 WHIT_CHECK whit_result api_check_instances(const whit_log *log, whit_instances instances);

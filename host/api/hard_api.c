@@ -78,10 +78,9 @@ whit_result whit_hard_view(whit_device *device, const whit_scene *scene,
     *out = NULL;
     own.width = own.width ? own.width : WIDTH_DEFAULT;
     own.height = own.height ? own.height : HEIGHT_DEFAULT;
-    if (own.width > SIDE_MAX || own.height > SIDE_MAX) {
-        log_error(log, "%u x %u: at most %d on a side", own.width, own.height, SIDE_MAX);
-        return WHIT_ERROR_USAGE;
-    }
+    if (own.width > SIDE_MAX || own.height > SIDE_MAX)
+        return API_FAIL(log, WHIT_ERROR_USAGE, "%u x %u: at most %d on a side", own.width,
+                        own.height, SIDE_MAX);
     whit_result result = api_check_numerics(log, own.numerics);
     if (result == WHIT_OK)
         result = api_check_instances(log, own.instances);

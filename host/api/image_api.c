@@ -95,63 +95,28 @@ whit_result whit_image_save_layers(const whit_image *image, const whit_image_lay
     return image_save(log, &image->image, items, layer_count, path, texts, text_count);
 }
 
-struct whit_image_strips {
-    whit_log log;
-    char *path;
-    struct image_rows *rows;
-};
-
-static void free_strips(whit_image_strips *strips)
-{
-    free(strips->path);
-    free(strips);
-}
-
 whit_result whit_image_strips_begin(const char *path, const whit_image *like, uint32_t height,
                                     const whit_text *texts, uint32_t text_count,
                                     const whit_log *log, whit_image_strips **out)
 {
     struct image shape = like->image;
-    whit_image_strips *strips = calloc(1, sizeof *strips);
-    *out = NULL;
     shape.height = height;
-    if (!strips) {
-        log_error(log, "%s: out of memory", path);
-        return WHIT_ERROR_MEMORY;
-    }
-    strips->log = *log;
-    strips->path = string_copy(path);
-    whit_result result = WHIT_ERROR_MEMORY;
-    if (strips->path)
-        result =
-            image_rows_begin(&strips->log, strips->path, &shape, texts, text_count, &strips->rows);
-    else
-        log_error(log, "%s: out of memory", path);
-    if (result == WHIT_OK)
-        *out = strips;
-    else
-        free_strips(strips);
-    return result;
+    return image_rows_begin(log, path, &shape, texts, text_count, out);
 }
 
 whit_result whit_image_strips_add(whit_image_strips *strips, const whit_image *strip)
 {
-    return image_rows_add(strips->rows, &strip->image);
+    return image_rows_add(strips, &strip->image);
 }
 
 whit_result whit_image_strips_commit(whit_image_strips *strips)
 {
-    whit_result result = image_rows_commit(strips->rows);
-    free_strips(strips);
-    return result;
+    return image_rows_commit(strips);
 }
 
 void whit_image_strips_abandon(whit_image_strips *strips)
 {
-    if (!strips)
-        return;
-    image_rows_abandon(strips->rows);
-    free_strips(strips);
+    image_rows_abandon(strips);
 }
 
 float *whit_image_edit(whit_image *image)
@@ -184,22 +149,11 @@ whit_result whit_image_load(const char *path, const whit_load_params *params, co
                             whit_image **out)
 {
     const struct foreign_params foreign = load_foreign(params);
-    *out = NULL;
+    struct image image = {0};
     whit_result result = load_check(log, path, params);
-    if (result != WHIT_OK)
-        return result;
-    whit_image *image = calloc(1, sizeof *image);
-    if (!image) {
-        log_error(log, "%s: out of memory", path);
-        return WHIT_ERROR_MEMORY;
-    }
-    result = image_load(log, NULL, path, &foreign, &image->image);
-    if (result != WHIT_OK) {
-        whit_image_destroy(image);
-        return result;
-    }
-    *out = image;
-    return WHIT_OK;
+    if (result == WHIT_OK)
+        result = image_load(log, NULL, path, &foreign, &image);
+    return api_hand_out(log, &image, result, out);
 }
 
 whit_result whit_image_create(uint32_t width, uint32_t height, uint32_t channels,

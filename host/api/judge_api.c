@@ -66,14 +66,11 @@ static whit_result make_rays(whit_judge *judge, const whit_judge_params *params,
 
 static whit_result check(const whit_log *log, const whit_judge_params *params)
 {
-    if (params->count > RAYS_MAX) {
-        log_error(log, "%u rays: at most %d", params->count, RAYS_MAX);
-        return WHIT_ERROR_USAGE;
-    }
-    if (params->width > SIDE_MAX || params->height > SIDE_MAX) {
-        log_error(log, "%u x %u: at most %d on a side", params->width, params->height, SIDE_MAX);
-        return WHIT_ERROR_USAGE;
-    }
+    if (params->count > RAYS_MAX)
+        return API_FAIL(log, WHIT_ERROR_USAGE, "%u rays: at most %d", params->count, RAYS_MAX);
+    if (params->width > SIDE_MAX || params->height > SIDE_MAX)
+        return API_FAIL(log, WHIT_ERROR_USAGE, "%u x %u: at most %d on a side", params->width,
+                        params->height, SIDE_MAX);
     return api_check_instances(log, params->instances);
 }
 
@@ -87,10 +84,8 @@ static whit_result fill(whit_judge *judge, const whit_scene *scene, const whit_j
     judge->rays = array_alloc(wanted, sizeof *judge->rays);
     judge->plain = array_alloc(wanted, sizeof *judge->plain);
     judge->exact = array_alloc(wanted, sizeof *judge->exact);
-    if (!judge->rays || !judge->plain || !judge->exact) {
-        log_error(&judge->log, "out of memory for %u rays", wanted);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!judge->rays || !judge->plain || !judge->exact)
+        return API_FAIL(&judge->log, WHIT_ERROR_MEMORY, "out of memory for %u rays", wanted);
     result = hard_scene_borrow(&judge->log, scene->scene, params->time_s,
                                api_one_tree(scene, params->instances), &judge->hard);
     if (result == WHIT_OK)
@@ -155,10 +150,8 @@ static whit_result measure_t(const whit_judge *judge, const whit_hit *hits, whit
 {
     float *ulps = array_alloc((size_t)judge->count, sizeof *ulps);
     uint64_t count = 0;
-    if (!ulps) {
-        log_error(&judge->log, "out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!ulps)
+        return API_FAIL(&judge->log, WHIT_ERROR_MEMORY, "out of memory");
     for (uint64_t i = 0; i < judge->count; ++i) {
         const struct rational_hit *exact = &judge->exact[i];
         const whit_hit *hit = &hits[i];

@@ -36,11 +36,9 @@ static whit_result begin_side(const whit_scene *handle, struct scene_parts *part
 {
     *parts = (struct scene_parts){0};
     *side = (struct scene_side){handle->scene, parts};
-    if (handle->scene->pictures_dropped) {
-        log_error(&handle->log, "%s: its pictures were dropped, and are parts of it",
-                  handle->scene->name);
-        return WHIT_ERROR_USAGE;
-    }
+    if (handle->scene->pictures_dropped)
+        return API_FAIL(&handle->log, WHIT_ERROR_USAGE,
+                        "%s: its pictures were dropped, and are parts of it", handle->scene->name);
     return no_memory(handle, scene_parts_init(handle->scene, parts));
 }
 
@@ -84,26 +82,12 @@ whit_result whit_scene_part_change(const whit_scene *before, const whit_scene *a
     return result;
 }
 
-/* Makes a handle for scene `made`, with the log of `from`. Owns `made`, also on failure. */
-static whit_result hand_out(const whit_scene *from, struct scene *made, whit_scene **out)
-{
-    whit_scene *handle = calloc(1, sizeof *handle);
-    if (!handle) {
-        scene_destroy(made);
-        return no_memory(from, WHIT_ERROR_MEMORY);
-    }
-    handle->log = from->log;
-    handle->scene = made;
-    return api_complete_scene(handle, WHIT_OK, out);
-}
-
 whit_result whit_scene_mix(const whit_scene *before, const whit_scene *after, const bool *back,
                            whit_scene **out)
 {
     struct scene_parts was = {0}, is = {0};
     struct scene_side side_before, side_after;
     struct scene *made = NULL;
-    *out = NULL;
     whit_result result = begin_side(before, &was, &side_before);
     if (result == WHIT_OK)
         result = begin_side(after, &is, &side_after);
@@ -111,7 +95,7 @@ whit_result whit_scene_mix(const whit_scene *before, const whit_scene *after, co
         result = no_memory(after, scene_mix(&after->log, &side_before, &side_after, back, &made));
     scene_parts_finish(&was);
     scene_parts_finish(&is);
-    return result == WHIT_OK ? hand_out(after, made, out) : result;
+    return api_hand_out_scene(&after->log, made, result, out);
 }
 
 whit_result whit_scene_fault(const whit_scene *scene, const whit_fault *faults, uint32_t count,
@@ -120,10 +104,9 @@ whit_result whit_scene_fault(const whit_scene *scene, const whit_fault *faults, 
     struct scene_parts parts = {0};
     struct scene_side side;
     struct scene *made = NULL;
-    *out = NULL;
     whit_result result = begin_side(scene, &parts, &side);
     if (result == WHIT_OK)
         result = no_memory(scene, scene_fault(&scene->log, &side, faults, count, &made));
     scene_parts_finish(&parts);
-    return result == WHIT_OK ? hand_out(scene, made, out) : result;
+    return api_hand_out_scene(&scene->log, made, result, out);
 }

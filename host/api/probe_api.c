@@ -195,8 +195,7 @@ static whit_result report_from(const whit_renderer *renderer, const struct probe
         free(report);
         free(rays);
         free(calls);
-        log_error(&renderer->log, "out of memory");
-        return WHIT_ERROR_MEMORY;
+        return API_FAIL(&renderer->log, WHIT_ERROR_MEMORY, "out of memory");
     }
     for (uint32_t i = 0; i < from->ray_count; ++i) {
         rays[i] = ray_of(renderer->accel->scene, from, &from->rays[i]);

@@ -21,10 +21,8 @@ whit_result whit_reference_create(whit_accel *accel, const whit_renderer_params 
                                            .thread_count = threads};
     *out = NULL;
     whit_reference *reference = calloc(1, sizeof *reference);
-    if (!reference) {
-        log_error(&accel->log, "out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!reference)
+        return API_FAIL(&accel->log, WHIT_ERROR_MEMORY, "out of memory");
     reference->log = accel->log;
     reference->accel = accel->accel;
     reference->params = inner.picture;
@@ -118,10 +116,8 @@ whit_result whit_reference_rays(whit_reference *reference, uint32_t x, uint32_t 
     whit_result result = reference_ray_tree(reference->reference, x, y, sample, &found, count);
     if (result == WHIT_OK)
         *rays = calloc(*count, sizeof **rays);
-    if (result == WHIT_OK && !*rays) {
-        log_error(&reference->log, "out of memory");
-        result = WHIT_ERROR_MEMORY;
-    }
+    if (result == WHIT_OK && !*rays)
+        result = API_FAIL(&reference->log, WHIT_ERROR_MEMORY, "out of memory");
     for (uint32_t i = 0; result == WHIT_OK && i < *count; ++i) {
         whit_probe_ray *ray = &(*rays)[i];
         *ray = ray_of(reference->accel, found, i);

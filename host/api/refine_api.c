@@ -47,17 +47,13 @@ whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_para
     whit_result result = api_need_device(renderer);
     if (result != WHIT_OK)
         return result;
-    if (shader_has(renderer->params.shader, WHIT_HOOK_POST)) {
-        log_error(&renderer->log,
-                  "what `post` of the shader makes of the mean of samples is not the "
-                  "mean of what it makes of them: such a picture is not refined");
-        return WHIT_ERROR_USAGE;
-    }
+    if (shader_has(renderer->params.shader, WHIT_HOOK_POST))
+        return API_FAIL(&renderer->log, WHIT_ERROR_USAGE,
+                        "what `post` of the shader makes of the mean of samples is not the "
+                        "mean of what it makes of them: such a picture is not refined");
     whit_refine *refine = calloc(1, sizeof *refine);
-    if (!refine) {
-        log_error(&renderer->log, "out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!refine)
+        return API_FAIL(&renderer->log, WHIT_ERROR_MEMORY, "out of memory");
     refine->log = renderer->log;
     whit_refine_move(refine, renderer, params);
     result = whit_renderer_set_view(renderer, &refine->params);
@@ -166,14 +162,12 @@ whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float
 {
     const whit_renderer_params *params = &refine->params;
     struct part part = {0};
-    if (refine->samples > 0 || samples == 0 || params->width == 0 || params->height == 0) {
-        log_error(&refine->log, "a picture can be refined from its first sample on, and once");
-        return WHIT_ERROR_USAGE;
-    }
-    if (samples > WHIT_SAMPLES_MAX) {
-        log_error(&refine->log, "%u samples to begin with: at most %d", samples, WHIT_SAMPLES_MAX);
-        return WHIT_ERROR_USAGE;
-    }
+    if (refine->samples > 0 || samples == 0 || params->width == 0 || params->height == 0)
+        return API_FAIL(&refine->log, WHIT_ERROR_USAGE,
+                        "a picture can be refined from its first sample on, and once");
+    if (samples > WHIT_SAMPLES_MAX)
+        return API_FAIL(&refine->log, WHIT_ERROR_USAGE, "%u samples to begin with: at most %d",
+                        samples, WHIT_SAMPLES_MAX);
     size_t pixels = (size_t)params->width * params->height;
     whit_result result =
         image_init_logged(&refine->log, &part.color, params->width, params->height, 4, false);
@@ -229,10 +223,9 @@ whit_result whit_refine_step(whit_refine *refine)
     struct part part = {0};
     uint32_t samples = refine->samples;
     bool radiance = refine->cut && !refine->radiance_known;
-    if (is_last(refine)) {
-        log_error(&refine->log, "a pixel has no more than %d samples", WHIT_SAMPLES_MAX);
-        return WHIT_ERROR_USAGE;
-    }
+    if (is_last(refine))
+        return API_FAIL(&refine->log, WHIT_ERROR_USAGE, "a pixel has no more than %d samples",
+                        WHIT_SAMPLES_MAX);
     whit_result result =
         radiance ? draw_part(refine, 0, 1, BAILOUT_ALL, &part)
                  : draw_part(refine, samples, samples ? samples : 1, refine->params.bailout, &part);
@@ -275,10 +268,8 @@ static whit_result copy(const whit_refine *refine, const struct image *from, whi
 whit_result whit_refine_image(const whit_refine *refine, whit_image **out)
 {
     *out = NULL;
-    if (refine->samples == 0) {
-        log_error(&refine->log, "no picture was rendered yet");
-        return WHIT_ERROR_USAGE;
-    }
+    if (refine->samples == 0)
+        return API_FAIL(&refine->log, WHIT_ERROR_USAGE, "no picture was rendered yet");
     whit_result result = copy(refine, &refine->mean.color, out);
     if (result == WHIT_OK)
         whit_image_display_as(*out, &refine->params);
@@ -290,17 +281,16 @@ whit_result whit_refine_aov(const whit_refine *refine, uint32_t index, whit_imag
     *out = NULL;
     if (index < refine->mean.aov_count)
         return copy(refine, &refine->mean.aovs[index], out);
-    log_error(&refine->log, "there is no function %u of the shader in all samples", index);
-    return WHIT_ERROR_USAGE;
+    return API_FAIL(&refine->log, WHIT_ERROR_USAGE,
+                    "there is no function %u of the shader in all samples", index);
 }
 
 whit_result whit_refine_error_image(const whit_refine *refine, whit_image **out)
 {
     *out = NULL;
-    if (!is_told(refine)) {
-        log_error(&refine->log, "an error can be told once samples were doubled");
-        return WHIT_ERROR_USAGE;
-    }
+    if (!is_told(refine))
+        return API_FAIL(&refine->log, WHIT_ERROR_USAGE,
+                        "an error can be told once samples were doubled");
     return copy(refine, &refine->errors, out);
 }
 

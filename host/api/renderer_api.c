@@ -80,10 +80,8 @@ whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
     *out = NULL;
     whit_log log = device ? device->log : accel->log;
     whit_renderer *renderer = calloc(1, sizeof *renderer);
-    if (!renderer) {
-        log_error(&log, "out of memory");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!renderer)
+        return API_FAIL(&log, WHIT_ERROR_MEMORY, "out of memory");
     renderer->log = log;
     renderer->accel = accel->accel;
     renderer->params = *params;
@@ -123,10 +121,9 @@ whit_result whit_renderer_render_views(whit_renderer *renderer, const whit_camer
 
 whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s)
 {
-    if (!isfinite(time_s)) {
-        log_error(&renderer->log, "a time of %g s: it must be finite", time_s);
-        return WHIT_ERROR_USAGE;
-    }
+    if (!isfinite(time_s))
+        return API_FAIL(&renderer->log, WHIT_ERROR_USAGE, "a time of %g s: it must be finite",
+                        time_s);
     whit_result result = renderer->renderer ? renderer_set_time(renderer->renderer, time_s)
                                             : pose_on_cpu(renderer->accel, time_s);
     if (result == WHIT_OK)
@@ -166,10 +163,9 @@ whit_result whit_renderer_set_shader(whit_renderer *renderer, const whit_rendere
     if (!params)
         params = &defaults;
     whit_result result = api_need_device(renderer);
-    if (result == WHIT_OK && !renderer_takes_shader(renderer->renderer, params->shader)) {
-        log_error(&renderer->log, "a shader of other functions needs a renderer of its own");
-        result = WHIT_ERROR_USAGE;
-    }
+    if (result == WHIT_OK && !renderer_takes_shader(renderer->renderer, params->shader))
+        result = API_FAIL(&renderer->log, WHIT_ERROR_USAGE,
+                          "a shader of other functions needs a renderer of its own");
     if (result == WHIT_OK)
         result = renderer_set_shader(renderer->renderer, params);
     if (result == WHIT_OK) {
@@ -223,10 +219,8 @@ static whit_result make_image(whit_renderer *renderer, whit_aov aov, bool borrow
 {
     *out = NULL;
     whit_result result = api_need_device(renderer);
-    if (result == WHIT_OK && aov > WHIT_AOV_DISTANCES && aov < WHIT_AOV_SHADER) {
-        log_error(&renderer->log, "there is no aov %u", (unsigned)aov);
-        result = WHIT_ERROR_USAGE;
-    }
+    if (result == WHIT_OK && aov > WHIT_AOV_DISTANCES && aov < WHIT_AOV_SHADER)
+        result = API_FAIL(&renderer->log, WHIT_ERROR_USAGE, "there is no aov %u", (unsigned)aov);
     if (result != WHIT_OK)
         return result;
     struct image image = {0};
@@ -295,10 +289,8 @@ whit_result whit_renderer_cost_image(whit_renderer *renderer, whit_view view, wh
     whit_result result = api_need_device(renderer);
     if (result != WHIT_OK)
         return result;
-    if ((uint32_t)view > WHIT_VIEW_STACK || (uint32_t)kind > WHIT_RAY_KINDS) {
-        log_error(&renderer->log, "there is no such view of costs");
-        return WHIT_ERROR_USAGE;
-    }
+    if ((uint32_t)view > WHIT_VIEW_STACK || (uint32_t)kind > WHIT_RAY_KINDS)
+        return API_FAIL(&renderer->log, WHIT_ERROR_USAGE, "there is no such view of costs");
     struct image image = {0};
     for (uint32_t k = 0; result == WHIT_OK && k < RAY_KIND_COUNT; ++k) {
         if (kind == WHIT_RAY_KINDS || (uint32_t)kind == k)
@@ -359,10 +351,8 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
                                 whit_cost *cost)
 {
     uint64_t batches = (trace->count + CPU_BATCH - 1) / CPU_BATCH;
-    if (batches > UINT32_MAX) {
-        log_error(&renderer->log, "more rays than one call takes");
-        return WHIT_ERROR_USAGE;
-    }
+    if (batches > UINT32_MAX)
+        return API_FAIL(&renderer->log, WHIT_ERROR_USAGE, "more rays than one call takes");
     whit_result result = pose_on_cpu(renderer->accel, renderer->params.time_s);
     if (result != WHIT_OK)
         return result;
@@ -372,8 +362,7 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
     if (!trace->statuses || (cost && !trace->costs)) {
         free(trace->statuses);
         free(trace->costs);
-        log_error(&renderer->log, "out of memory");
-        return WHIT_ERROR_MEMORY;
+        return API_FAIL(&renderer->log, WHIT_ERROR_MEMORY, "out of memory");
     }
     threads_for(renderer->accel->params.threads, (uint32_t)batches, trace_batch, trace);
     uint32_t status = 0;
@@ -387,16 +376,24 @@ static whit_result trace_on_cpu(const whit_renderer *renderer, struct cpu_trace 
     free(trace->statuses);
     if (cancelled(renderer))
         return WHIT_ERROR_CANCELLED;
-    if (status) {
-        log_error(&renderer->log,
-                  "the traversal reported status %#x: its hits are not to be "
-                  "trusted",
-                  status);
-        return WHIT_ERROR_STATUS;
-    }
+    if (status)
+        return API_FAIL(&renderer->log, WHIT_ERROR_STATUS,
+                        "the traversal reported status %#x: its hits are not to be "
+                        "trusted",
+                        status);
     if (cost)
         *cost = sum;
     return WHIT_OK;
+}
+
+/* As trace_on_cpu, with room for the hits, which is the caller's to free after a failure too. */
+static whit_result find_hits(const whit_renderer *renderer, struct cpu_trace *trace,
+                             whit_cost *cost)
+{
+    trace->hits = malloc((size_t)trace->count * sizeof *trace->hits);
+    if (!trace->hits)
+        return API_FAIL(&renderer->log, WHIT_ERROR_MEMORY, "out of memory");
+    return trace_on_cpu(renderer, trace, cost);
 }
 
 static whit_result draw_grid(whit_renderer *renderer, struct image *color)
@@ -408,10 +405,7 @@ static whit_result draw_grid(whit_renderer *renderer, struct image *color)
     if (result != WHIT_OK)
         return result;
     trace.rays = rays;
-    trace.hits = malloc((size_t)trace.count * sizeof *trace.hits);
-    result = trace.hits ? trace_on_cpu(renderer, &trace, NULL) : WHIT_ERROR_MEMORY;
-    if (!trace.hits)
-        log_error(&renderer->log, "out of memory");
+    result = find_hits(renderer, &trace, NULL);
     for (size_t i = 0; result == WHIT_OK && i < trace.count; ++i) {
         float share = trace.hits[i].primitive == HIT_NONE ? GRID_WEIGHT * cover[i] : 0.0f;
         for (size_t c = 0; share > 0.0f && c < 3; ++c) {
@@ -449,10 +443,9 @@ whit_result whit_renderer_draw_over(whit_renderer *renderer, const whit_overlay 
     whit_result result = api_need_device(renderer);
     bool any = overlay->grid || overlay->edges_of_instances || overlay->edges_of_primitives;
     if (result == WHIT_OK && any &&
-        (renderer->params.row_count || renderer_view_count(renderer->renderer))) {
-        log_error(&renderer->log, "grid and edges are drawn over whole pictures");
-        result = WHIT_ERROR_USAGE;
-    }
+        (renderer->params.row_count || renderer_view_count(renderer->renderer)))
+        result = API_FAIL(&renderer->log, WHIT_ERROR_USAGE,
+                          "grid and edges are drawn over whole pictures");
     if (result == WHIT_OK && overlay->grid)
         result = draw_grid(renderer, &color->image);
     if (result == WHIT_OK && (overlay->edges_of_instances || overlay->edges_of_primitives))
@@ -466,10 +459,8 @@ static whit_result trace_on_device(whit_renderer *renderer, const struct gpu_ray
     struct gpu_cost *costs = NULL;
     if (cost) {
         costs = calloc(count ? (size_t)count : 1, sizeof *costs);
-        if (!costs) {
-            log_error(&renderer->log, "out of memory");
-            return WHIT_ERROR_MEMORY;
-        }
+        if (!costs)
+            return API_FAIL(&renderer->log, WHIT_ERROR_MEMORY, "out of memory");
     }
     whit_result result = renderer_trace(renderer->renderer, rays, count, any, hits, costs);
     whit_cost sum = {0};
@@ -491,11 +482,9 @@ whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray
 {
     const void *from = rays;
     void *to = hits;
-    if ((unsigned)on > WHIT_TRACE_CPU_BRUTE) {
-        log_error(&renderer->log, "rays are traced on the device or on the CPU, not on %d",
-                  (int)on);
-        return WHIT_ERROR_USAGE;
-    }
+    if ((unsigned)on > WHIT_TRACE_CPU_BRUTE)
+        return API_FAIL(&renderer->log, WHIT_ERROR_USAGE,
+                        "rays are traced on the device or on the CPU, not on %d", (int)on);
     if (on == WHIT_TRACE_DEVICE) {
         whit_result result = api_need_device(renderer);
         return result == WHIT_OK ? trace_on_device(renderer, from, count, any, to, cost) : result;
@@ -521,10 +510,7 @@ whit_result whit_renderer_sample_costs(whit_renderer *renderer, uint32_t pixels,
     if (result != WHIT_OK)
         return result;
     trace.rays = rays;
-    trace.hits = malloc((size_t)trace.count * sizeof *trace.hits);
-    result = trace.hits ? trace_on_cpu(renderer, &trace, cost) : WHIT_ERROR_MEMORY;
-    if (!trace.hits)
-        log_error(&renderer->log, "out of memory");
+    result = find_hits(renderer, &trace, cost);
     free(trace.hits);
     free(rays);
     return result;

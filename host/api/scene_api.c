@@ -1,6 +1,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "api/handles.h"
 #include "base/array.h"
@@ -14,38 +15,20 @@
 
 static const double DEGREES = 180.0 / PI;
 
-static whit_result begin(const whit_log *log, whit_scene **out)
-{
-    *out = calloc(1, sizeof **out);
-    if (!*out) {
-        log_error(log, "out of memory for a scene");
-        return WHIT_ERROR_MEMORY;
-    }
-    (*out)->log = log_or_silence(log);
-    return WHIT_OK;
-}
-
 whit_result whit_scene_load(const char *path, const whit_load_params *params, const whit_log *log,
                             whit_scene **out)
 {
-    *out = NULL;
-    whit_scene *scene;
-    whit_result result = begin(log, &scene);
-    if (result != WHIT_OK)
-        return result;
-    result = load_scene(&scene->log, path, params, &scene->scene);
-    return api_complete_scene(scene, result, out);
+    const whit_log own = log_or_silence(log);
+    struct scene *scene = NULL;
+    whit_result result = load_scene(&own, path, params, &scene);
+    return api_hand_out_scene(&own, scene, result, out);
 }
 
 whit_result whit_scene_small(const whit_log *log, whit_scene **out)
 {
-    *out = NULL;
-    whit_scene *scene;
-    whit_result result = begin(log, &scene);
-    if (result != WHIT_OK)
-        return result;
-    scene->scene = scene_small(&scene->log);
-    return api_complete_scene(scene, scene->scene ? WHIT_OK : WHIT_ERROR_MEMORY, out);
+    const whit_log own = log_or_silence(log);
+    struct scene *scene = scene_small(&own);
+    return api_hand_out_scene(&own, scene, scene ? WHIT_OK : WHIT_ERROR_MEMORY, out);
 }
 
 void whit_scene_drop_pictures(whit_scene *scene)
@@ -65,18 +48,6 @@ void whit_scene_destroy(whit_scene *scene)
 static const char *or_empty(const char *text)
 {
     return text ? text : "";
-}
-
-static void copy3(float out[3], const float in[3])
-{
-    for (int i = 0; i < 3; ++i)
-        out[i] = in[i];
-}
-
-static void copy3_double(double out[3], const double in[3])
-{
-    for (int i = 0; i < 3; ++i)
-        out[i] = in[i];
 }
 
 void whit_scene_get_info(const whit_scene *handle, whit_scene_info *info)
@@ -107,8 +78,8 @@ void whit_scene_get_info(const whit_scene *handle, whit_scene_info *info)
     };
     for (uint32_t i = 0; i < scene->mesh_count; ++i)
         info->mesh_triangle_count += scene->meshes[i].triangle_count;
-    copy3_double(info->lo, handle->pose.lo);
-    copy3_double(info->hi, handle->pose.hi);
+    memcpy(info->lo, handle->pose.lo, sizeof info->lo);
+    memcpy(info->hi, handle->pose.hi, sizeof info->hi);
     scene_pose_objects(scene, &handle->pose, info->objects_lo, info->objects_hi);
 }
 
@@ -159,11 +130,11 @@ void whit_scene_get_material(const whit_scene *handle, uint32_t index, whit_mate
         .roughness = material->roughness,
         .texture_count = count_textures(material),
     };
-    copy3(info->diffuse, material->diffuse);
-    copy3(info->specular, material->specular);
-    copy3(info->emission, material->emission);
-    copy3(info->reflection, material->reflection);
-    copy3(info->transmission, material->transmission);
+    memcpy(info->diffuse, material->diffuse, sizeof info->diffuse);
+    memcpy(info->specular, material->specular, sizeof info->specular);
+    memcpy(info->emission, material->emission, sizeof info->emission);
+    memcpy(info->reflection, material->reflection, sizeof info->reflection);
+    memcpy(info->transmission, material->transmission, sizeof info->transmission);
 }
 
 void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_info *info)
@@ -177,12 +148,12 @@ void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_i
         .kind = light->kind,
         .made_by_whit = light->made_by_whit,
     };
-    copy3_double(info->position, light->position);
+    memcpy(info->position, light->position, sizeof info->position);
     /* light->position is a corner of a rectangle; scene files and this info have its centre. */
     for (int i = 0; i < 3 && light->kind == WHIT_LIGHT_RECTANGLE; ++i)
         info->position[i] += 0.5 * (light->edge_u[i] + light->edge_v[i]);
-    copy3_double(info->direction, light->direction);
-    copy3(info->color, light->color);
+    memcpy(info->direction, light->direction, sizeof info->direction);
+    memcpy(info->color, light->color, sizeof info->color);
 }
 
 void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera_info *info)
@@ -203,9 +174,9 @@ void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera
         .target_is_direction = camera->target_is_direction,
         .made_by_whit = camera->made_by_whit,
     };
-    copy3_double(info->eye, camera->eye);
-    copy3_double(info->target, camera->target);
-    copy3_double(info->up, camera->up);
+    memcpy(info->eye, camera->eye, sizeof info->eye);
+    memcpy(info->target, camera->target, sizeof info->target);
+    memcpy(info->up, camera->up, sizeof info->up);
 }
 
 void whit_scene_get_instance(const whit_scene *handle, uint32_t index, whit_instance_info *info)
@@ -249,8 +220,8 @@ whit_result whit_scene_choose_camera(const whit_scene *handle, whit_camera *came
         log_error(&handle->log, "out of memory");
         return result;
     }
-    copy3_double(camera->eye, viewpoint.eye);
-    copy3_double(camera->target, viewpoint.target);
+    memcpy(camera->eye, viewpoint.eye, sizeof camera->eye);
+    memcpy(camera->target, viewpoint.target, sizeof camera->target);
     camera->fov_y_degrees = viewpoint.fov_y * DEGREES;
     return WHIT_OK;
 }
@@ -275,9 +246,9 @@ static whit_camera camera_of(const struct scene_camera *from)
         .lens_radius = (double)from->lens_radius,
         .focus_distance = (double)from->focus_distance,
     };
-    copy3_double(camera.eye, from->eye);
-    copy3_double(camera.target, from->target);
-    copy3_double(camera.up, from->up);
+    memcpy(camera.eye, from->eye, sizeof camera.eye);
+    memcpy(camera.target, from->target, sizeof camera.target);
+    memcpy(camera.up, from->up, sizeof camera.up);
     return camera;
 }
 

@@ -29,10 +29,8 @@ whit_result whit_shader_compiler_create(const whit_shader_limits *limits, const 
         compiler->compiler = shader_compiler_create(&compiler->log, &compiler->limits, 0.0);
     }
     if (!compiler || !compiler->compiler) {
-        const whit_log silent = log_or_silence(log);
-        log_error(&silent, "out of memory");
         free(compiler);
-        return WHIT_ERROR_MEMORY;
+        return API_FAIL(log, WHIT_ERROR_MEMORY, "out of memory");
     }
     *out = compiler;
     return WHIT_OK;
@@ -69,13 +67,6 @@ uint32_t whit_shader_compiler_errors_left(const whit_shader_compiler *compiler)
 
 /* ---- In pictures ---- */
 
-static bool is_picture(const char *path)
-{
-    char extension[8];
-    path_extension(path, extension, sizeof extension);
-    return strcmp(extension, "png") == 0 || strcmp(extension, "exr") == 0;
-}
-
 /* Reads the text of the functions that a picture file carries. */
 static whit_result read_picture(whit_shader_compiler *compiler, const char *path,
                                 struct shader_text *text)
@@ -95,8 +86,8 @@ static whit_result read_picture(whit_shader_compiler *compiler, const char *path
     if (packed) {
         result = shader_pack_read(&compiler->log, path, packed, &pack);
     } else {
-        log_error(&compiler->log, "%s: a picture without functions in it", path);
-        result = WHIT_ERROR_INPUT;
+        result = API_FAIL(&compiler->log, WHIT_ERROR_INPUT, "%s: a picture without functions in it",
+                          path);
     }
     free(texts);
     if (result != WHIT_OK)
@@ -144,8 +135,7 @@ whit_result whit_shader_unpack(const char *packed, const char *where, const whit
     shader_pack_free(&pack);
     if (*files)
         return WHIT_OK;
-    log_error(log, "%s: out of memory", where);
-    return WHIT_ERROR_MEMORY;
+    return API_FAIL(log, WHIT_ERROR_MEMORY, "%s: out of memory", where);
 }
 
 /* ---- Loading ---- */
@@ -157,26 +147,9 @@ static whit_result read_functions(whit_shader_compiler *compiler, const char *pa
     *text = (struct shader_text){0};
     if (!path)
         return WHIT_OK;
-    return is_picture(path) ? read_picture(compiler, path, text)
-                            : shader_text_read(&compiler->log, path, text, &compiler->errors);
-}
-
-static whit_result load(whit_shader_compiler *compiler, const char *path, const char *stages_folder,
-                        bool trust, whit_shader **out)
-{
-    struct shader_errors *errors = &compiler->errors;
-    struct shader_text text;
-    struct shader_stages *stages;
-    *out = NULL;
-    whit_result result = read_functions(compiler, path, &text);
-    if (result != WHIT_OK)
-        return result;
-    result = shader_program_stages(&compiler->log, stages_folder, &stages, errors);
-    if (result == WHIT_OK)
-        return shader_program_create(&compiler->log, compiler->compiler, &text, stages, trust, out,
-                                     errors);
-    shader_text_free(&text);
-    return result;
+    bool picture = path_is(path, "png") || path_is(path, "exr");
+    return picture ? read_picture(compiler, path, text)
+                   : shader_text_read(&compiler->log, path, text, &compiler->errors);
 }
 
 whit_result whit_shader_load(whit_shader_compiler *compiler, const char *path, bool trust,
@@ -186,16 +159,24 @@ whit_result whit_shader_load(whit_shader_compiler *compiler, const char *path, b
 }
 
 whit_result whit_shader_load_stages(whit_shader_compiler *compiler, const char *path,
-                                    const char *stages, bool trust, whit_shader **out)
+                                    const char *folder, bool trust, whit_shader **out)
 {
     struct shader_errors *errors = &compiler->errors;
+    struct shader_text text;
+    struct shader_stages *stages;
     *errors = (struct shader_errors){0};
     *out = NULL;
-    if (!path && !stages) {
-        log_error(&compiler->log, "there is no path of a file to load");
-        return WHIT_ERROR_USAGE;
+    if (!path && !folder)
+        return API_FAIL(&compiler->log, WHIT_ERROR_USAGE, "there is no path of a file to load");
+    whit_result result = read_functions(compiler, path, &text);
+    if (result == WHIT_OK) {
+        result = shader_program_stages(&compiler->log, folder, &stages, errors);
+        if (result == WHIT_OK)
+            result = shader_program_create(&compiler->log, compiler->compiler, &text, stages, trust,
+                                           out, errors);
+        else
+            shader_text_free(&text);
     }
-    whit_result result = load(compiler, path, stages, trust, out);
     show_errors(compiler);
     return result;
 }
@@ -203,10 +184,8 @@ whit_result whit_shader_load_stages(whit_shader_compiler *compiler, const char *
 whit_result whit_shader_compile_tests(whit_shader_compiler *compiler, whit_shader *shader)
 {
     compiler->errors = (struct shader_errors){0};
-    if (!shader->tests.test_count) {
-        log_error(&compiler->log, "%s: it has no tests", shader->files[0]);
-        return WHIT_ERROR_USAGE;
-    }
+    if (!shader->tests.test_count)
+        return API_FAIL(&compiler->log, WHIT_ERROR_USAGE, "%s: it has no tests", shader->files[0]);
     whit_result result =
         shader_program_compile_tests(&compiler->log, compiler->compiler, shader, &compiler->errors);
     show_errors(compiler);

@@ -26,9 +26,9 @@ double whit_clock_cpu_ms(void); /* processor time of all threads of this process
    memory at a time. Each strip but the last has a multiple of WHIT_STRIP_ROWS rows. The file
    appears at commit, with the bytes that whit_image_save of the whole picture gives it. */
 #define WHIT_STRIP_ROWS 16
-typedef struct whit_image_strips whit_image_strips;
-/* `like`: a strip, which sets all properties of the picture but its height. `texts` are borrowed
-   until commit or abandon. WHIT_ERROR_OUTPUT also for pipes. */
+typedef struct image_rows whit_image_strips;
+/* `like`: a strip, which sets all properties of the picture but its height. `path`, `texts` and
+   `log` are borrowed until commit or abandon. WHIT_ERROR_OUTPUT also for pipes. */
 WHIT_CHECK whit_result whit_image_strips_begin(const char *path, const whit_image *like,
                                                uint32_t height, const whit_text *texts,
                                                uint32_t text_count, const whit_log *log,

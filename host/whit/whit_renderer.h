@@ -212,8 +212,9 @@ WHIT_CHECK whit_result whit_renderer_render_views(whit_renderer *renderer,
 WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double time_s);
 
 /* Prepares another picture of the same scene with the same kernels. Of `params` it takes width,
-   height, camera, time_s, sampling, light_samples, bailout, depth, exposure_ev, soft_highlights,
-   time_stages and sliders, and nothing else; the camera's name is borrowed until the next call
+   height, first_row, row_count, camera, time_s, sampling, light_samples, bailout, depth,
+   exposure_ev, soft_highlights, step_spacing, step_aov, few_pixels, reuse_rays, time_stages and
+   sliders, and nothing else; the camera's name is borrowed until the next call
    that succeeds. The picture is that of a renderer made with these params, byte for byte.
    WHIT_ERROR_USAGE and others as of whit_renderer_create. Params out of range leave the former view
    and picture, and so does a camera that is refused while time_s stays; after other errors the
