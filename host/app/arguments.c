@@ -232,19 +232,15 @@ static void unknown_option(struct cli_reader *reader)
         cli_misuse(reader, "there is no option `%s`", word);
 }
 
-static int take_positional(struct cli_reader *reader, const char *word)
+static bool take_positional(struct cli_reader *reader, const char *word)
 {
-    const char **place = &reader->positional;
-    if (reader->command->takes_two && reader->positional)
-        place = &reader->second;
-    if (reader->command->takes_many && reader->positional && reader->other_count < CLI_OTHERS_MAX)
-        place = &reader->others[reader->other_count++];
-    if (*place) {
-        cli_misuse(reader, "`%s` is one argument too many", word);
-        return 0;
-    }
-    *place = word;
-    return 1;
+    if (!reader->positional)
+        reader->positional = word;
+    else if (reader->other_count < reader->command->others_max)
+        reader->others[reader->other_count++] = word;
+    else
+        return cli_misuse(reader, "`%s` is one argument too many", word);
+    return true;
 }
 
 /* The next option, with reader->value; NULL at the end. */
@@ -407,7 +403,6 @@ static bool check_files(struct cli_reader *reader, const void *own, const struct
         memcpy(second, first, sizeof second);
     if (strcmp(first, "BENCH") != 0)
         files[count++] = (struct cli_file){first, reader->positional, false};
-    files[count++] = (struct cli_file){second, reader->second, false};
     for (uint32_t i = 0; strcmp(first, "SUITE") != 0 && i < reader->other_count; ++i)
         files[count++] = (struct cli_file){second, reader->others[i], false};
     for (const struct setting *row = reader->command->options; row->name; ++row) {

@@ -4,8 +4,6 @@
 
 #include "app/cli.h"
 
-enum { CLI_OTHERS_MAX = 4096 };
-
 /* Reads the arguments of one command. */
 struct cli_reader {
     const struct cli_command *command;
@@ -13,8 +11,7 @@ struct cli_reader {
     char **argv;
     const char *value;                  /* of the option at hand */
     const char *positional;             /* the first argument that is not an option, or NULL */
-    const char *second;                 /* the second one, where the command takes two */
-    const char *others[CLI_OTHERS_MAX]; /* from the second one on, where it takes many */
+    const char *others[CLI_OTHERS_MAX]; /* those behind it; others[0]: NULL without one */
     uint32_t other_count;
     bool done;         /* no option is left, or there was an error, or help was printed; see
                           `status` */

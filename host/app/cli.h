@@ -22,6 +22,8 @@ enum cli_exit {
 
 /* ---- Options ---- */
 
+enum { CLI_OTHERS_MAX = 4096 };
+
 /* A subcommand. Its own options end with a zeroed one. They are followed by those rows of the table
    of settings that it takes and does not define itself, by --help, and by --help-all where some
    options are for developers. */
@@ -33,8 +35,8 @@ struct cli_command {
     const struct setting *options;            /* of the command's own record */
     uint32_t settings;                        /* a bit of enum settings_command; 0: it takes none */
     void (*usual)(struct settings *settings); /* sets defaults of its own; NULL: none */
-    bool takes_two;                           /* arguments that are no options; else one */
-    bool takes_many;                          /* after the first one: CLI_OTHERS_MAX */
+    uint32_t
+        others_max; /* most arguments behind the first that are no options, to CLI_OTHERS_MAX */
     int (*run)(const struct cli_command *command, int argc, char **argv);
     /* Gives word `index` that an option accepts beside its values; NULL: no more words. May be
        NULL. */

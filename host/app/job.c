@@ -32,8 +32,13 @@ static bool take_scene(struct job *job, struct cli_reader *reader, bool optional
 
 bool job_read(struct job *job, struct cli_reader *reader, void *own, bool optional)
 {
+    return cli_read(reader, own, &job->settings) && job_check(job, reader, optional);
+}
+
+bool job_check(struct job *job, struct cli_reader *reader, bool optional)
+{
     char why[SETTING_WHY_BYTES];
-    if (!cli_read(reader, own, &job->settings) || !take_scene(job, reader, optional))
+    if (!take_scene(job, reader, optional))
         return false;
     if (!settings_check(&job->settings, why))
         return cli_misuse(reader, "%s", why);
@@ -160,6 +165,19 @@ whit_result job_build(struct job *job)
     result = whit_accel_create(job->scene, &job->settings.trees, &job->accel);
     job->accel_ms = whit_clock_ms() - start_ms;
     return result == WHIT_OK ? job_still_wanted() : result;
+}
+
+bool job_any_device(void)
+{
+    whit_device_info *infos = NULL;
+    uint32_t count = 0;
+    bool usable = false;
+    if (whit_device_list(NULL, &infos, &count) != WHIT_OK)
+        return false;
+    for (uint32_t i = 0; i < count; ++i)
+        usable |= infos[i].usable;
+    whit_memory_destroy(infos);
+    return usable;
 }
 
 static const whit_log *log_of(const struct job *job)

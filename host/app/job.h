@@ -26,13 +26,16 @@ struct job {
 /* Sets the job's settings to the defaults of the command. */
 void job_init(struct job *job, const struct cli_command *command);
 /* Reads all options, checks that settings go together, and takes the first argument as the scene;
-   `optional`: it may be missing. */
+   `optional`: it may be missing. job_check: only does the latter, where options were read. */
 bool job_read(struct job *job, struct cli_reader *reader, void *own, bool optional);
+bool job_check(struct job *job, struct cli_reader *reader, bool optional);
 /* Prepares caches and drivers by environment variables, of which those that are set stay as they
    are, and starts the clock of --time-limit. Call it before threads are started and before
    Vulkan. */
 void job_start(const struct job *job);
 
+/* Whether there is a device that whit can use. */
+bool job_any_device(void);
 /* Starts to open the device in a thread, for which job_open_device waits. Errors are printed there,
    and not at all if the program ends before. */
 void job_begin_device(struct job *job);

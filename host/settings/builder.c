@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "settings/settings.h"
 
 enum { TEXT_MAX = 100 };
@@ -32,12 +33,9 @@ static bool read_number(const char *text, double min, double max, double *out, c
 
 static bool read_bins(const char *text, const char *bins, whit_accel_params *out, char *why)
 {
-    char *end;
-    unsigned long count = strtoul(bins, &end, 10);
-    if (!isdigit((unsigned char)bins[0]) || *end || count < 2 || count > 256)
-        return setting_refuse(why, " `%s`: a whole number of bins from 2 to 256 is needed", text);
-    out->bins = (uint32_t)count;
-    return true;
+    const char *rest = text_number(bins, 256, &out->bins);
+    return (rest && !*rest && out->bins >= 2) ||
+           setting_refuse(why, " `%s`: a whole number of bins from 2 to 256 is needed", text);
 }
 
 static bool read_spatial(const char *text, const char *numbers, whit_accel_params *out, char *why)

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
+
 static const uint64_t PIXELS_MAX = UINT64_C(1) << 28;
 
 typedef char folder[SETTING_PATH_BYTES];
@@ -72,14 +74,12 @@ static bool read_choice(const struct setting *setting, const char *text, void *a
 
 static bool read_count(const struct setting *setting, const char *text, uint32_t *out, char *why)
 {
-    char *end;
-    errno = 0;
-    unsigned long long value = strtoull(text, &end, 10);
-    if (!isdigit((unsigned char)text[0]) || *end || errno || (double)value < setting->min ||
-        (double)value > setting->max)
+    uint32_t value;
+    const char *rest = text_number(text, UINT32_MAX, &value);
+    if (!rest || *rest || value < setting->min || value > setting->max)
         return setting_refuse(why, " `%s`: a whole number from %.0f to %.0f is needed", text,
                               setting->min, setting->max);
-    *out = (uint32_t)value;
+    *out = value;
     return true;
 }
 
@@ -114,28 +114,19 @@ static bool read_bytes(const char *text, uint64_t *out, char *why)
 
 static bool read_size(const char *text, uint32_t out[2], char *why)
 {
-    unsigned long sides[2] = {0, 0};
-    char *end = NULL;
-    bool good = isdigit((unsigned char)text[0]);
-    if (good) {
-        sides[0] = strtoul(text, &end, 10);
-        good = (*end == 'x' || *end == 'X') && isdigit((unsigned char)end[1]);
-    }
-    if (good) {
-        sides[1] = strtoul(end + 1, &end, 10);
-        good = !*end;
-    }
-    for (int i = 0; i < 2; ++i)
-        good = good && sides[i] >= 1 && sides[i] <= SETTING_SIDE_MAX;
-    if (good && (uint64_t)sides[0] * sides[1] > PIXELS_MAX)
-        return setting_refuse(why, " `%s`: %llu pixels are more than %llu, the most of a picture",
-                              text, (unsigned long long)sides[0] * sides[1],
-                              (unsigned long long)PIXELS_MAX);
-    if (!good)
+    uint32_t width, height = 0;
+    const char *rest = text_number(text, SETTING_SIDE_MAX, &width);
+    rest = rest && (*rest == 'x' || *rest == 'X') ? text_number(rest + 1, SETTING_SIDE_MAX, &height)
+                                                  : NULL;
+    if (!rest || *rest || !width || !height)
         return setting_refuse(why, " `%s`: WxH is needed, each from 1 to %d, such as 1280x720",
                               text, SETTING_SIDE_MAX);
-    out[0] = (uint32_t)sides[0];
-    out[1] = (uint32_t)sides[1];
+    uint64_t pixels = (uint64_t)width * height;
+    if (pixels > PIXELS_MAX)
+        return setting_refuse(why, " `%s`: %llu pixels are more than %llu, the most of a picture",
+                              text, (unsigned long long)pixels, (unsigned long long)PIXELS_MAX);
+    out[0] = width;
+    out[1] = height;
     return true;
 }
 

@@ -1,9 +1,9 @@
 /* The table of settings: a row an option, in the order of help. */
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "settings/settings.h"
 
 enum { DEPTH_MAX = 255, FRAMES_MAX = 1000000000 };
@@ -81,11 +81,12 @@ static bool read_aa(const struct setting *row, const char *text, void *record, c
     char *end;
     (void)row;
     if (strncmp(text, prefix, length) != 0) {
-        unsigned long count = strtoul(text, &end, 10);
-        if (!isdigit((unsigned char)text[0]) || *end || count < 1 || count > WHIT_SAMPLES_MAX)
+        uint32_t count;
+        const char *rest = text_number(text, WHIT_SAMPLES_MAX, &count);
+        if (!rest || *rest || count < 1)
             return setting_refuse(why, " `%s`: a whole number from 1 to %d or adaptive:X is needed",
                                   text, WHIT_SAMPLES_MAX);
-        picture->sampling = (whit_sampling){.count = (uint32_t)count};
+        picture->sampling = (whit_sampling){.count = count};
         return true;
     }
     double contrast = strtod(text + length, &end);

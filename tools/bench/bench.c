@@ -176,7 +176,7 @@ int main(int argc, char **argv)
 {
     static const struct cli_command command = {.name = "bench",
                                                .arguments = "[BENCH]",
-                                               .takes_many = true,
+                                               .others_max = CLI_OTHERS_MAX,
                                                .options = bench_options,
                                                .settings = IN_BENCH};
     static struct bench bench;

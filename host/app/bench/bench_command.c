@@ -76,7 +76,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
 const struct cli_command command_bench = {
     .name = "bench",
     .arguments = "[BENCH] [MODEL or SCENE...] [options]",
-    .takes_many = true,
+    .others_max = CLI_OTHERS_MAX,
     .summary = "Measures what choices cost on this machine, and prints the tables.",
     .details = "Without BENCH it lists the benches. Tables are Markdown, on standard output.\n",
     .options = bench_options,

@@ -102,26 +102,12 @@ static void default_threads(struct study *study)
         study->threads[study->thread_count++] = threads_available();
 }
 
-static bool any_device(void)
-{
-    const whit_log silent = {0};
-    whit_device_info *infos = NULL;
-    uint32_t count = 0;
-    bool usable = false;
-    if (whit_device_list(&silent, &infos, &count) != WHIT_OK)
-        return false;
-    for (uint32_t i = 0; i < count; ++i)
-        usable |= infos[i].usable;
-    whit_memory_destroy(infos);
-    return usable;
-}
-
 /* Opens the device, which may be missing unless the user named one. */
 static whit_result open_device(struct study *study)
 {
     if (study->no_trace)
         return WHIT_OK;
-    if (!study->job.settings.device[0] && !any_device()) {
+    if (!study->job.settings.device[0] && !job_any_device()) {
         study->no_trace = true;
         if (!study->job.settings.quiet)
             cli_note("there is no usable Vulkan device: no rays are traced");

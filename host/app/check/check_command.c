@@ -651,6 +651,6 @@ const struct cli_command command_check = {
         "device, 4 no golden, 5 time limit, 130 interrupted.\n",
     .options = options,
     .settings = IN_CHECK,
-    .takes_many = true,
+    .others_max = CLI_OTHERS_MAX,
     .run = run,
 };

@@ -357,7 +357,7 @@ static bool check_picture(struct cli_reader *reader, const char *option, const c
 static bool check_request(struct cli_reader *reader, struct compare *compare)
 {
     compare->paths[0] = reader->positional;
-    compare->paths[1] = reader->second;
+    compare->paths[1] = reader->others[0];
     if (!compare->paths[1])
         return cli_misuse(reader, "%s missing", compare->paths[0] ? "B is" : "A and B are");
     return check_picture(reader, "--diff", compare->diff) &&
@@ -392,6 +392,6 @@ const struct cli_command command_compare = {
         "`flip`; with them no other metric passes a tolerance.\n",
     .options = options,
     .settings = IN_COMPARE,
-    .takes_two = true,
+    .others_max = 1,
     .run = run,
 };

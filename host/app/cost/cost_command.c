@@ -134,12 +134,12 @@ static bool check_request(struct cli_reader *reader, struct cost *cost)
     if (ignored)
         return cli_misuse(reader, "--compare prints two reports side by side, and takes no --%s",
                           ignored);
-    if (cost->compares && !reader->second)
+    if (cost->compares && !reader->others[0])
         return cli_misuse(reader, "--compare needs two files that --json wrote");
     if (!cost->compares && !reader->positional)
         return cli_misuse(reader, "a scene is missing");
-    if (!cost->compares && reader->second)
-        return cli_misuse(reader, "too many arguments: `%s`", reader->second);
+    if (!cost->compares && reader->others[0])
+        return cli_misuse(reader, "too many arguments: `%s`", reader->others[0]);
     return cost->compares || check_files(reader, cost);
 }
 
@@ -275,7 +275,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
     if (!job_read(&cost.job, &reader, &cost, true) || !check_request(&reader, &cost))
         return reader.status;
     if (cost.compares)
-        return cost_compare_files(reader.positional, reader.second);
+        return cost_compare_files(reader.positional, reader.others[0]);
     complete(&cost);
     job_start(&cost.job);
     cost.command = cli_line(argc, argv);
@@ -306,7 +306,7 @@ const struct cli_command command_cost = {
         "measured.\n",
     .options = options,
     .settings = IN_COST,
-    .takes_two = true,
+    .others_max = 1,
     .run = run,
     .word = knob_word,
 };

@@ -108,6 +108,6 @@ const struct cli_command command_merge = {
         "a tile.\n",
     .options = options,
     .settings = IN_MERGE,
-    .takes_many = true,
+    .others_max = CLI_OTHERS_MAX,
     .run = run,
 };

@@ -1,33 +1,20 @@
 #include "app/probe/probe_output.h"
 
-#include <ctype.h>
-#include <stdlib.h>
-
 #include "app/arguments.h"
 #include "app/cache.h"
 #include "app/commands.h"
 #include "app/render/render_command.h"
+#include "base/text.h"
 
 enum { RAYS_MAX = 16383 };
-
-static bool read_coordinate(const char **text, char end, uint32_t *out)
-{
-    char *after;
-    if (!isdigit((unsigned char)**text))
-        return false;
-    unsigned long value = strtoul(*text, &after, 10);
-    *out = value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
-    *text = after + 1;
-    return *after == end;
-}
 
 static bool read_pixel(const struct setting *setting, const char *value, void *record, char *why)
 {
     struct probe *probe = record;
-    const char *text = value;
+    const char *rest = text_number(value, UINT32_MAX, &probe->x);
     (void)setting;
-    probe->has_pixel =
-        read_coordinate(&text, ',', &probe->x) && read_coordinate(&text, '\0', &probe->y);
+    rest = rest && *rest == ',' ? text_number(rest + 1, UINT32_MAX, &probe->y) : NULL;
+    probe->has_pixel = rest && !*rest;
     return probe->has_pixel ||
            setting_refuse(why, " `%s`: two numbers X,Y are needed, such as 320,240", value);
 }

@@ -1,4 +1,3 @@
-#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -140,9 +139,9 @@ static whit_result check_own_camera(const char *text, const whit_camera *camera)
 
 static bool is_index(const char *text, uint32_t count)
 {
-    char *end;
-    unsigned long index = strtoul(text, &end, 10);
-    return isdigit((unsigned char)text[0]) && !*end && index < count;
+    uint32_t index;
+    const char *rest = text_number(text, UINT32_MAX, &index);
+    return rest && !*rest && index < count;
 }
 
 static whit_result refuse_camera(const struct job *job, const char *wanted, uint32_t count)
@@ -581,15 +580,7 @@ static bool read_all(struct job *job, struct cli_reader *reader, struct render_r
             request->part = place.part;
         return true;
     }
-    struct cli_reader again;
-    job_init(job, reader->command);
-    cli_reader_init(&again, reader->command, argc, argv);
-    again.where = reader->where;
-    again.trusted = reader->trusted;
-    again.said = reader->said;
-    again.said_bytes = reader->said_bytes;
-    *reader = again;
-    return job_read(job, reader, request, false);
+    return job_check(job, reader, false);
 }
 
 bool render_read(struct job *job, struct cli_reader *reader, struct render_request *request,

@@ -75,23 +75,14 @@ static whit_result try_pictures(struct job *job, struct attempt *attempt)
     return result;
 }
 
-static bool has_device(void)
-{
-    whit_device_info *infos = NULL;
-    uint32_t count = 0;
-    bool any = whit_device_list(NULL, &infos, &count) == WHIT_OK && count > 0;
-    whit_memory_destroy(infos);
-    return any;
-}
-
 whit_result attempt_make(struct job *job, const char *scene, struct attempt *attempt)
 {
     const whit_shader_info *info = &attempt->info;
     whit_shader_get_info(job->shader, &attempt->info);
     bool needs = info->test_count || info->expectation_count;
     job_start(job);
-    if (!needs && !has_device()) {
-        cli_note("there is no device: kernels are not tried");
+    if (!needs && !job_any_device()) {
+        cli_note("there is no usable device: kernels are not tried");
         return WHIT_OK;
     }
     whit_result result = begin_scene(job, scene);

@@ -39,15 +39,15 @@ static const struct setting options[] = {
 static int print_template(struct cli_reader *reader)
 {
     char list[256] = "";
-    if (!reader->second)
+    if (!reader->others[0])
         return CLI_MISUSE(reader, "new: which function? `whit shader new shade > my.glsl`");
     unsigned hook = 0;
-    for (; hook < WHIT_HOOKS && strcmp(reader->second, whit_hook_name((whit_hook)hook)) != 0;
+    for (; hook < WHIT_HOOKS && strcmp(reader->others[0], whit_hook_name((whit_hook)hook)) != 0;
          ++hook)
         snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", hook ? ", " : "",
                  whit_hook_name((whit_hook)hook));
     if (hook == WHIT_HOOKS)
-        return CLI_MISUSE(reader, "new %s: one of %s is needed", reader->second, list);
+        return CLI_MISUSE(reader, "new %s: one of %s is needed", reader->others[0], list);
     char *text = whit_shader_template((whit_hook)hook);
     if (!text)
         return cli_exit_of(cli_no_memory());
@@ -238,8 +238,8 @@ static int extract(struct cli_reader *reader, const struct shader_options *reque
 {
     const char *folders[SETTING_FOLDERS_MAX];
     const whit_load_params params = settings_load(&request->job.settings, folders);
-    if (reader->second)
-        return extract_run(reader->second, request->into, &params);
+    if (reader->others[0])
+        return extract_run(reader->others[0], request->into, &params);
     return CLI_MISUSE(reader, "extract: out of which picture? `whit shader extract toon.png`");
 }
 
@@ -283,7 +283,7 @@ static int run(const struct cli_command *command, int argc, char **argv)
         return extract(&reader, &request);
     if (request.into)
         return CLI_MISUSE(&reader, "--into is for `whit shader extract PICTURE`");
-    if (!reader.positional || reader.second)
+    if (!reader.positional || reader.others[0])
         return CLI_MISUSE(&reader,
                           "one FILE is needed, or `new` and the name of a function, or `extract` "
                           "and a picture");
@@ -310,6 +310,6 @@ const struct cli_command command_shader = {
         "compile: FILE:LINE says where, 3 no device for tests.\n",
     .options = options,
     .settings = IN_SHADER,
-    .takes_two = true,
+    .others_max = 1,
     .run = run,
 };
