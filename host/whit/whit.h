@@ -44,16 +44,12 @@
 
 #define WHIT_VERSION "0.2.0"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 /* The WHIT_VERSION of the library that runs, for programs that load it without this header. Never
    NULL. */
 const char *whit_version(void);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

@@ -4,9 +4,7 @@
 
 #include "whit_types.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 typedef enum whit_build {
     WHIT_BUILD_BINNED = 0, /* surface area heuristic over equal bins */
@@ -100,8 +98,6 @@ WHIT_CHECK whit_result whit_accel_boxes(const whit_accel *accel, double time_s, 
                                         uint32_t level, uint64_t max, whit_box **boxes,
                                         uint64_t *total);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

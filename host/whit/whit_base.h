@@ -6,9 +6,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Around declarations, for C++. */
 #ifdef __cplusplus
-extern "C" {
+#define WHIT_C_BEGIN extern "C" {
+#define WHIT_C_END   }
+#else
+#define WHIT_C_BEGIN
+#define WHIT_C_END
 #endif
+
+WHIT_C_BEGIN
 
 #if defined(__GNUC__) || defined(__clang__)
 #define WHIT_CHECK        __attribute__((warn_unused_result))
@@ -89,8 +96,6 @@ size_t whit_text_next(const char *text, char shown[WHIT_SHOWN_BYTES]);
    0. Text that does not fit is cut and ends with `...`. `out_bytes` > 16. Returns `out`. */
 char *whit_text_show(const char *text, char *out, size_t out_bytes);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

@@ -4,9 +4,7 @@
 
 #include "whit_types.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 /* The difference of `b` from `a`, the reference; over RGB, linear, unless said otherwise. Grey
    counts as three equal channels, a missing alpha as 1. For images of hit identities only
@@ -48,8 +46,6 @@ WHIT_CHECK whit_result whit_image_compare(const whit_image *a, const whit_image 
 WHIT_CHECK whit_result whit_image_subtract(const whit_image *a, const whit_image *b,
                                            const whit_log *log, whit_image **out);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

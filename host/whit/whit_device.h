@@ -4,9 +4,7 @@
 
 #include "whit_types.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 /* In order of preference: "auto" takes a device of the first kind that there is. */
 typedef enum whit_device_kind {
@@ -70,8 +68,6 @@ WHIT_CHECK whit_result whit_device_find_floats(whit_device *device, whit_device_
 
 uint32_t whit_device_validation_messages(const whit_device *device);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

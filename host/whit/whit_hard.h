@@ -4,9 +4,7 @@
 
 #include "whit_renderer.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 /* ---- Hard cases ---- */
 
@@ -148,8 +146,6 @@ typedef struct whit_judgement {
 WHIT_CHECK whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics,
                                        const whit_hit *hits, whit_judgement *out);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

@@ -4,9 +4,7 @@
 
 #include "whit_scene.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 typedef struct whit_image_info {
     uint32_t width, height, channels;
@@ -99,8 +97,6 @@ WHIT_CHECK whit_result whit_image_encode_png(const whit_image *image, const whit
                                              uint32_t text_count, const whit_log *log,
                                              uint8_t **data, size_t *size_bytes);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

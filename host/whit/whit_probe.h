@@ -4,9 +4,7 @@
 
 #include "whit_renderer.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 /* The reason why a ray ended. */
 typedef enum whit_probe_end {
@@ -148,8 +146,6 @@ WHIT_CHECK whit_result whit_probe_rows(const whit_probe_report *report, whit_pro
 void whit_probe_why(const whit_probe_report *report, const whit_scene *scene, char *text,
                     size_t bytes);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

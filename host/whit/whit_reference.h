@@ -4,9 +4,7 @@
 
 #include "whit_probe.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 /* Draws the same picture on the CPU in double, by an independent implementation: a picture of the
    device is judged by its difference from this one. See host/reference/reference.h. */
@@ -39,8 +37,6 @@ void whit_reference_get_stats(const whit_reference *reference, whit_stats *stats
 WHIT_CHECK whit_result whit_reference_rays(whit_reference *reference, uint32_t x, uint32_t y,
                                            uint32_t sample, whit_probe_ray **rays, uint32_t *count);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

@@ -4,9 +4,7 @@
 
 #include "whit_renderer.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 /* A picture of 1, 2, 4, 8 ... samples a pixel. Each step draws as many samples as there are, so
    that no ray of the picture is traced twice; only the estimate of its error may need the camera
@@ -70,8 +68,6 @@ WHIT_CHECK whit_result whit_refine_error_image(const whit_refine *refine, whit_i
    the step that draws what the estimate needs. Times are the sums of all steps. */
 void whit_refine_get_stats(const whit_refine *refine, whit_stats *stats);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

@@ -5,9 +5,7 @@
 #include "whit_shader.h"
 #include "whit_types.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 /* ---- Rendering ---- */
 
@@ -414,8 +412,6 @@ WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, con
    not measured. */
 double whit_trace_device_ms(const whit_renderer *renderer);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

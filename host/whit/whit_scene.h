@@ -4,9 +4,7 @@
 
 #include "whit_types.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 /* The axis of a model that points up, after an axis that its format or file states (FBX, COLLADA,
    3MF) was turned to y. */
@@ -220,8 +218,6 @@ WHIT_CHECK whit_result whit_scene_triangles(const whit_scene *scene, double time
                                             bool (*fn)(void *user, const whit_triangle *triangle),
                                             void *user);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

@@ -5,9 +5,7 @@
 
 #include "whit_types.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 /* The version of the functions that such files may use; they state it as `//@ whit 1`. */
 #define WHIT_SHADER_VERSION 1
@@ -204,8 +202,6 @@ WHIT_CHECK whit_result whit_shader_unpack(const char *packed, const char *where,
                                           const whit_log *log, whit_shader_file **files,
                                           uint32_t *count);
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

@@ -8,9 +8,7 @@
 
 #include "whit_base.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+WHIT_C_BEGIN
 
 /* The caller owns everything that libwhit hands out. A handle is released by its own function, such
    as whit_scene_destroy; a block of infos, boxes, rays or bytes by whit_memory_destroy. All of
@@ -80,8 +78,6 @@ typedef enum whit_classes {
     WHIT_CLASSES_MANY,
 } whit_classes;
 
-#ifdef __cplusplus
-}
-#endif
+WHIT_C_END
 
 #endif

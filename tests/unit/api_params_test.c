@@ -14,36 +14,43 @@ static whit_renderer_params small(void)
     return params_sized(16, 16, NULL);
 }
 
+/* `result` is that of a call which was refused with `reason`, the last error. */
+static void refused(whit_result result, const char *reason)
+{
+    assert_int_equal(result, WHIT_ERROR_USAGE);
+    assert_non_null(strstr(messages.last_error, reason));
+    messages = (struct messages){0};
+}
+
 /* With a device (`on` is it) and without (NULL). */
 static void refuse(whit_device *on, const whit_renderer_params *params, const char *reason)
 {
     whit_renderer *renderer = NULL;
-    messages = (struct messages){0};
-    assert_int_equal(whit_renderer_create(on, accel, params, &renderer), WHIT_ERROR_USAGE);
+    refused(whit_renderer_create(on, accel, params, &renderer), reason);
     assert_null(renderer);
-    assert_non_null(strstr(messages.last_error, reason));
 }
 
 TEST_IN(values_out_of_range_are_refused, begin, device_end)
 {
-    for (int i = 0; i < 2; ++i) {
+    static const struct {
+        size_t at;
+        double value;
+        const char *reason;
+    } numbers[] = {
+        {offsetof(whit_renderer_params, bailout), NAN, "a bail-out of nan: must be finite"},
+        {offsetof(whit_renderer_params, time_s), INFINITY, "a time of inf s"},
+        {offsetof(whit_renderer_params, exposure_ev), NAN,
+         "an exposure of nan and a time limit of 0 s"},
+        {offsetof(whit_renderer_params, time_limit_s), NAN, "a time limit of nan s"},
+        {offsetof(whit_renderer_params, time_limit_s), -1.0, "a time limit of -1 s"},
+    };
+    for (size_t i = 0; i < 2 * sizeof numbers / sizeof *numbers; ++i) {
         whit_renderer_params params = small();
-        params.bailout = NAN;
-        refuse(i ? device : NULL, &params, "a bail-out of nan: must be finite");
-        params = small();
-        params.time_s = INFINITY;
-        refuse(i ? device : NULL, &params, "a time of inf s");
+        memcpy((char *)&params + numbers[i / 2].at, &numbers[i / 2].value, sizeof(double));
+        refuse(i % 2 ? device : NULL, &params, numbers[i / 2].reason);
         params = small();
         params.depth = 999;
-        refuse(i ? device : NULL, &params, "depth 999: must be 0..255");
-        params = small();
-        params.exposure_ev = NAN;
-        refuse(i ? device : NULL, &params, "an exposure of nan and a time limit of 0 s");
-        params = small();
-        params.time_limit_s = NAN;
-        refuse(i ? device : NULL, &params, "a time limit of nan s");
-        params.time_limit_s = -1.0;
-        refuse(i ? device : NULL, &params, "a time limit of -1 s");
+        refuse(i % 2 ? device : NULL, &params, "depth 999: must be 0..255");
     }
     whit_renderer_params params = small();
     params.camera = (whit_camera){
@@ -87,8 +94,8 @@ TEST_IN(a_view_out_of_range_leaves_the_picture, begin, device_end)
     assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_OK);
     whit_image_destroy(image);
     assert_int_equal(whit_renderer_render_views(renderer, &nowhere, 1), WHIT_ERROR_USAGE);
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_ERROR_USAGE);
-    assert_non_null(strstr(messages.last_error, "since the renderer was made, changed or failed"));
+    refused(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image),
+            "since the renderer was made, changed or failed");
 }
 
 TEST_IN(rays_are_traced_in_one_of_the_ways_that_there_are, begin, device_end)
@@ -98,10 +105,7 @@ TEST_IN(rays_are_traced_in_one_of_the_ways_that_there_are, begin, device_end)
     own_whit_renderer *renderer = NULL;
     whit_hit hit;
     assert_int_equal(whit_renderer_create(NULL, accel, &params, &renderer), WHIT_OK);
-    messages = (struct messages){0};
-    assert_int_equal(whit_trace(renderer, (whit_trace_on)9, &ray, 1, false, &hit, NULL),
-                     WHIT_ERROR_USAGE);
-    assert_non_null(strstr(messages.last_error, "not on 9"));
+    refused(whit_trace(renderer, (whit_trace_on)9, &ray, 1, false, &hit, NULL), "not on 9");
 }
 
 TEST_IN(without_a_device_nothing_is_drawn_over, begin, device_end)
@@ -113,8 +117,7 @@ TEST_IN(without_a_device_nothing_is_drawn_over, begin, device_end)
     own_whit_image *image = NULL;
     assert_int_equal(whit_renderer_create(NULL, accel, &params, &renderer), WHIT_OK);
     assert_int_equal(whit_image_create(1, 1, 4, light, &image), WHIT_OK);
-    assert_int_equal(whit_renderer_draw_over(renderer, &overlay, image), WHIT_ERROR_USAGE);
-    assert_non_null(strstr(messages.last_error, "made without a device"));
+    refused(whit_renderer_draw_over(renderer, &overlay, image), "made without a device");
 }
 
 TEST(limits_of_importers_are_not_below_0)
@@ -204,21 +207,16 @@ TEST_IN(judges_of_wide_pictures_have_no_more_rays_than_asked, begin, device_end)
 static void refuse_judge(const whit_judge_params *params, const char *reason)
 {
     whit_judge *judge = NULL;
-    messages = (struct messages){0};
-    assert_int_equal(whit_judge_create(scene, params, &warnings_log, &judge), WHIT_ERROR_USAGE);
+    refused(whit_judge_create(scene, params, &warnings_log, &judge), reason);
     assert_null(judge);
-    assert_non_null(strstr(messages.last_error, reason));
 }
 
 static void refuse_hard_view(const whit_hard_view_params *params, const char *reason)
 {
     uint64_t wrong, other;
     whit_image *image = NULL;
-    messages = (struct messages){0};
-    assert_int_equal(whit_hard_view(NULL, scene, params, &warnings_log, &wrong, &other, &image),
-                     WHIT_ERROR_USAGE);
+    refused(whit_hard_view(NULL, scene, params, &warnings_log, &wrong, &other, &image), reason);
     assert_null(image);
-    assert_non_null(strstr(messages.last_error, reason));
 }
 
 TEST_IN(judges_refuse_values_out_of_range, begin, device_end)
@@ -231,18 +229,15 @@ TEST_IN(judges_refuse_values_out_of_range, begin, device_end)
     refuse_judge(&(whit_judge_params){.time_s = NAN}, "a time of nan s: it must be finite");
     refuse_judge(&(whit_judge_params){.instances = (whit_instances)9}, "instances 9: auto");
     assert_int_equal(whit_judge_create(scene, &good, &warnings_log, &judge), WHIT_OK);
-    messages = (struct messages){0};
-    assert_int_equal(whit_judge_hits(judge, (whit_numerics)9, NULL, &judgement), WHIT_ERROR_USAGE);
-    assert_non_null(strstr(messages.last_error, "there is no level of numerics 9"));
+    refused(whit_judge_hits(judge, (whit_numerics)9, NULL, &judgement),
+            "there is no level of numerics 9");
     whit_judge_destroy(judge);
     refuse_hard_view(&(whit_hard_view_params){.numerics = (whit_numerics)9}, "numerics 9");
     refuse_hard_view(&(whit_hard_view_params){.instances = (whit_instances)9}, "instances 9");
     refuse_hard_view(&(whit_hard_view_params){.width = 8, .height = 8, .time_s = NAN},
                      "a time of nan s");
     const whit_hard_params run = {.instances = (whit_instances)9};
-    messages = (struct messages){0};
-    assert_int_equal(whit_hard_run(NULL, scene, &run, &warnings_log, &report), WHIT_ERROR_USAGE);
-    assert_non_null(strstr(messages.last_error, "instances 9"));
+    refused(whit_hard_run(NULL, scene, &run, &warnings_log, &report), "instances 9");
 }
 
 static bool first_triangle(void *user, const whit_triangle *triangle)
@@ -288,17 +283,13 @@ TEST_IN(images_that_there_are_none_of_are_refused, begin, device_end)
     params.sampling = (whit_sampling){.count = 4, .first = 4};
     own_whit_renderer *renderer = renderer_of(&params);
     assert_int_equal(whit_renderer_render(renderer), WHIT_OK);
-    messages = (struct messages){0};
-    assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_IDS, &image), WHIT_ERROR_USAGE);
-    assert_non_null(strstr(messages.last_error, "those of the first sample"));
-    assert_int_equal(whit_renderer_image(renderer, (whit_aov)7, &image), WHIT_ERROR_USAGE);
-    assert_non_null(strstr(messages.last_error, "there is no aov 7"));
+    refused(whit_renderer_image(renderer, WHIT_AOV_IDS, &image), "those of the first sample");
+    refused(whit_renderer_image(renderer, (whit_aov)7, &image), "there is no aov 7");
     assert_int_equal(whit_renderer_image(renderer, WHIT_AOV_COLOR, &image), WHIT_OK);
     const whit_compare_params from_afar = {.pixels_per_degree = 0.5};
     whit_difference difference;
-    assert_int_equal(whit_image_compare(image, image, &from_afar, &warnings_log, &difference, NULL),
-                     WHIT_ERROR_USAGE);
-    assert_non_null(strstr(messages.last_error, "0.5 pixels a degree: must be 1 to 1000"));
+    refused(whit_image_compare(image, image, &from_afar, &warnings_log, &difference, NULL),
+            "0.5 pixels a degree: must be 1 to 1000");
 }
 
 TEST_IN(identities_are_not_displayed, begin, device_end)

@@ -23,15 +23,15 @@ static size_t item_length(const char *list)
 
 static bool add_row(struct study *study, const char *text, char *why)
 {
-    struct study_row row = {0};
-    if (!builder_read(text, &row.trees, why))
+    whit_accel_params trees = {0};
+    if (!builder_read(text, &trees, why))
         return false;
-    if (row.trees.build == WHIT_BUILD_NONE)
+    if (trees.build == WHIT_BUILD_NONE)
         return setting_refuse(why, " `%s`: without trees there is nothing to compare", text);
     if (study->row_count == STUDY_ROWS_MAX)
         return setting_refuse(why, ": more than %d builders", STUDY_ROWS_MAX);
-    builder_write(&row.trees, row.name, sizeof row.name);
-    study->rows[study->row_count++] = row;
+    struct study_row *row = &study->rows[study->row_count++];
+    builder_write(&trees, row->name, sizeof row->name);
     return true;
 }
 

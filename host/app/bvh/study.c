@@ -30,11 +30,9 @@ static whit_result build_once(struct study *study, struct study_row *row, uint32
 {
     whit_accel_params params = study->job.settings.trees;
     whit_accel *accel = NULL;
-    params.build = row->trees.build;
-    params.optimize = row->trees.optimize;
-    params.bins = row->trees.bins;
-    params.spatial_alpha = row->trees.spatial_alpha;
-    params.spatial_budget = row->trees.spatial_budget;
+    char why[SETTING_WHY_BYTES];
+    if (!builder_read(row->name, &params, why))
+        return CLI_FAIL(WHIT_ERROR_USAGE, "%s%s", row->name, why);
     params.threads = threads;
     whit_result result = whit_accel_create(study->job.scene, &params, &accel);
     if (result != WHIT_OK)

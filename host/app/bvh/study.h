@@ -9,8 +9,7 @@ enum { STUDY_ROWS_MAX = 32, STUDY_THREADS_MAX = 16, STUDY_RUNS_MAX = 1000 };
 enum study_kind { STUDY_PRIMARY, STUDY_SHADOW, STUDY_DIFFUSE, STUDY_KINDS };
 
 struct study_row {
-    whit_accel_params trees; /* only the fields that --build sets are read */
-    char name[96];
+    char name[96]; /* the builder, as builder_write gives it */
     whit_accel *accel;
     whit_renderer *renderer; /* NULL: not traced */
     whit_accel_info info;

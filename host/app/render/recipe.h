@@ -4,7 +4,6 @@
 
 #include "app/document.h"
 #include "app/render/part.h"
-#include "app/render/view_image.h"
 
 /* The texts that a picture carries about itself: only what decides its pixels, so that the same
    inputs give the same bytes. */
@@ -23,6 +22,17 @@ struct recipe {
 bool recipe_init(struct recipe *recipe, const struct settings *settings, const whit_scene *scene,
                  const whit_shader *shader, const whit_device_info *device, const whit_stats *stats,
                  const char *output, json_t *camera);
+/* The mean, the largest value and the scale of a picture of costs. */
+struct view_figures {
+    double mean, max, scale; /* mean and max over pixels; scale of the heat map, whether or not one
+                                is drawn */
+};
+
+/* The cost image of the picture just rendered: as a heat map with a legend for a .png, as numbers
+   for other files. */
+WHIT_CHECK whit_result view_image(whit_renderer *renderer, const struct settings *settings,
+                                  const char *output, struct view_figures *figures,
+                                  whit_image **out);
 /* Adds view, scale and figures of a picture of costs. */
 void recipe_add_view(struct recipe *recipe, const struct settings *settings,
                      const struct view_figures *figures);

@@ -1,7 +1,7 @@
-#include "app/render/view_image.h"
-
+/* Pictures of what traversals cost: `whit render --view`, `--counters`. */
 #include <math.h>
 
+#include "app/render/recipe.h"
 #include "base/path.h"
 
 static void find_figures(const whit_image *values, struct view_figures *out)
