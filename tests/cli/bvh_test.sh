@@ -11,10 +11,6 @@ has() {
     grep -q -- "$1" "$OUT/stdout"
 }
 
-expect 0 "help" bvh --help
-check "help names the builders" has "spatial"
-check "whit names the command" sh -c "'$WHIT' --help | grep -q '^  bvh  '"
-
 # ---- Comparisons ----
 
 expect 0 "the default builders" bvh "$BALL" $SMALL --threads 1,2 --validate

@@ -1,5 +1,6 @@
 #!/bin/sh
 # Views of many cameras (--cameras): each is the picture that the scene's own camera of the same words makes.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 needs jq
 cd "$OUT" || exit 1
@@ -10,21 +11,17 @@ END
 jq -c '.[]' cameras.json | sed 's/$/\n/' >cameras.jsonl
 jq --slurpfile cameras cameras.json 'del(.camera) | .cameras = $cameras[0]' "$CUBE" >scene.json
 size="--size 20x13"
-# shellcheck disable=SC2086 # Options are split.
 expect 0 "views" render scene.json --cameras cameras.json -o v.##.pfm --ids i.#.exr --distances d.#.exr $size --aa 4
 check "it says what it did" grep -q "^whit: v.##.pfm: views 0 to 3, 20 x 13, rendered in" "$OUT/stderr"
 check "without a warning" test "$(grep -c . "$OUT/stderr")" -eq 1
-# shellcheck disable=SC2086
 expect 0 "one a line" render scene.json --cameras cameras.jsonl -o l.##.pfm $size --aa 4 -q
 for i in 0 1 2 3; do
-    # shellcheck disable=SC2086
     expect 0 "camera $i" render scene.json --camera $i -o c.pfm --ids c.exr $size --aa 4 -q
     check "view $i is its picture" cmp c.pfm v.0$i.pfm
     check "one a line too" cmp c.pfm l.0$i.pfm
     expect 0 "what view $i meets" compare c.exr i.$i.exr
     check "no file is missing" test -s d.$i.exr
 done
-# shellcheck disable=SC2086
 expect 0 "a recipe" render scene.json --cameras cameras.json -o r.#.png $size -q --tile-size 16 --stats json
 check "stages have times" jq -e 'all(.stages[]; .ms > 0)' "$OUT/stdout"
 expect 0 "of a pinhole draws the view again" render r.0.png -o again.png --yes -q
@@ -47,7 +44,6 @@ lines '{"eye": [1, 2, 3]}
 lines '{"fovv": 3}' "bad.json:1:2: fovv: unknown key; did you mean .fov."
 lines '{"animation": {}}' "bad.json:1:2: animation: cameras of views stand still"
 for option in "--camera 0" "--frames 0-1" "--tile 1/2" "--resume" "--aa adaptive:0.1" "--view depth" "--shader x.glsl" "--stages x"; do
-    # shellcheck disable=SC2086
     refuse 2 "$option" "--cameras and ${option%% *}.* do not go together" render scene.json --cameras cameras.json -o x.#.png $option
 done
 refuse 2 "no number" "-o x.png: with --cameras its name needs # for the number of the view" render scene.json --cameras cameras.json -o x.png

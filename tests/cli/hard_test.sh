@@ -61,7 +61,6 @@ refuse 2 "too few rays" "from 512 to" hard --rays 10
 refuse 2 "no such level" "fast, watertight, exact" hard --numerics best
 refuse 2 "JSON to a pipe" "/dev/stdout" hard --json -
 refuse 2 "JSON nowhere" "nowhere/x" hard --json "$OUT/nowhere/x"
-refuse 2 "no such scene" "missing.json" hard "$OUT/missing.json" --quiet
 refuse 2 "no such case" "in its name" hard --case goblin --quiet
 refuse 2 "a case of a scene" "not of a scene" hard "$CUBE" --case grid
 refuse 2 "a view without a file" "go together" hard --view leaks
@@ -70,8 +69,6 @@ refuse 2 "a view and a table" "no table" hard --view leaks -o "$OUT/files/x.png"
 refuse 2 "another view" "leaks is needed" hard --view depth -o "$OUT/files/x.png"
 refuse 2 "a picture of no kind" "pictures are" hard --view leaks -o "$OUT/files/x.gif"
 refuse 2 "a size of nothing" "are of --view" hard --size 9x9
-refuse 2 "unknown option" "did you mean .--quick." hard --quik
 refuse 5 "a time limit" "time limit" hard --rays 200000 --quiet --time-limit 0.5 --json "$J"
 check "no file was left" is_empty "$OUT/files"
-shows "help" "promise" hard --help
 finish

@@ -87,8 +87,5 @@ refuse 2 "too many rays" "1 to 16383" probe "$CUBE" --pixel 1,1 --rays 20000
 refuse 2 "JSON to a pipe" "/dev/stdout" probe "$CUBE" --pixel 1,1 --json -
 refuse 2 "JSON nowhere" "nowhere/x" probe "$CUBE" --pixel 1,1 --json "$OUT/nowhere/x"
 refuse 2 "no such camera" "no camera" probe "$CUBE" --pixel 1,1 --camera nobody --quiet
-refuse 2 "no such scene" "missing.json" probe "$OUT/missing.json" --pixel 1,1 --quiet
-refuse 2 "unknown option" "did you mean .--pixel." probe "$CUBE" --pixle 1,1
 check "no file was left" is_empty "$OUT/files"
-shows "help" "twin" probe --help
 finish

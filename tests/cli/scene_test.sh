@@ -164,6 +164,5 @@ check "a required sandbox is there, or an error" \
     test "$status" -eq "$(if grep -q sandbox "$OUT/stderr"; then echo 2; else echo 0; fi)"
 
 refuse 2 "triangles into no folder" "nowhere/t" scene "$CUBE" --triangles "$OUT/nowhere/t"
-refuse 2 "missing scene" "missing.obj" scene "$OUT/missing.obj"
 check "no file was left" is_empty "$OUT/files"
 finish

@@ -2,6 +2,7 @@
 # Functions of a user in the place of whit's own: files, errors, sliders, pictures, recipes. Wrong texts are in
 # shader_compile and shader_program, attacks in shader_harm. With a third argument there are more scenes, exact hits,
 # and all examples; a short run has one example, another one with the next commit.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 needs jq
 EXAMPLES=$(cd "$SCENES/../shaders/examples" && pwd)
@@ -10,7 +11,6 @@ MORE=${3:+whitted glass-of-water}
 mkdir "$OUT/here" && cd "$OUT/here" || exit 1
 SMALL="--size 48x32 --quiet"
 draw_usual() { expect 0 "as usual" render "$SCENES/default.json" --size 48x32 --quiet --light-samples 1 --depth 3 -o usual.png; }
-# shellcheck disable=SC2086 # options are split where they are used
 draw() { # WHAT OUTPUT SCENE OPTION...
     what=$1 output=$2 scene=$3
     shift 3
@@ -214,11 +214,9 @@ END
     said "ids" "turned.glsl:2: \`ids == base\` does not hold: "
     check "pixels and the first" grep -qE "turned.glsl:3: .*of 19200 pixels have another colour, the first at 15[0-9],[0-9]+: " "$OUT/stderr"
     check "and no more" test "$(grep -c error: "$OUT/stderr")" -eq 2
-    # shellcheck disable=SC2086
     expect 1 "in a picture" render "$SCENES/default.json" $SMALL --shader turned.glsl -o broken.png
     said "says so" "turned.glsl:2: "
     check "no picture" test ! -e broken.png
-    # shellcheck disable=SC2086
     expect 2 "ids of a refined picture" render "$SCENES/default.json" $SMALL --shader turned.glsl --refine 0.1 -o broken.png
     said "the expectation" "turned.glsl:2: \`ids == base\` cannot be checked"
     sed 's/0\.1;/0.0;/' turned.glsl >still.glsl
@@ -275,7 +273,6 @@ if part 1 2; then
     draw "by the file's own values" c.pfm cube --shader all.glsl --set bands=3,rim=#ffcc88,on=on,mode=plain
     check "those of the file are the usual ones" cmp a.pfm c.pfm
     for pair in band=2 bands=9; do
-        # shellcheck disable=SC2086
         expect 2 "--set $pair" render "$CUBE" $SMALL --shader all.glsl --set $pair -o no.png
         check "no picture of --set $pair" test ! -e no.png
     done
@@ -327,7 +324,6 @@ if part 1 2; then
     cat >trusted.glsl <<'END'
 vec3 miss(vec3 dir) { for (int i = 0; i < 12000; ++i) dir.x += 1e-9; return dir * dir; }
 END
-    # shellcheck disable=SC2086
     expect 1 "12,000 iterations" render "$CUBE" $SMALL --shader trusted.glsl -o no.png
     check "say where" grep -qE "trusted\.glsl:1: .*fuel" "$OUT/stderr"
     check "and have no picture" test ! -e no.png
@@ -336,13 +332,10 @@ END
     draw "with fuel" fuel.pfm cube --shader fuel.glsl
     check "the same as trusted" cmp trusted.pfm fuel.pfm
 fi
-# shellcheck disable=SC2086
-{
-    expect 2 "--max-error" render "$CUBE" $SMALL --shader own.glsl --max-error 0.1 -o no.png
-    said "says why" "the reference, which has no --shader"
-    expect 2 "--refine of what has post" render "$CUBE" $SMALL --shader own.glsl --refine 100ms -o no.png
-    said "says why" "is not refined"
-    expect 2 "--set alone" render "$CUBE" $SMALL --set x=1 -o no.png
-    expect 2 "--trust alone" render "$CUBE" $SMALL --trust -o no.png
-}
+expect 2 "--max-error" render "$CUBE" $SMALL --shader own.glsl --max-error 0.1 -o no.png
+said "says why" "the reference, which has no --shader"
+expect 2 "--refine of what has post" render "$CUBE" $SMALL --shader own.glsl --refine 100ms -o no.png
+said "says why" "is not refined"
+expect 2 "--set alone" render "$CUBE" $SMALL --set x=1 -o no.png
+expect 2 "--trust alone" render "$CUBE" $SMALL --trust -o no.png
 finish

@@ -1,5 +1,6 @@
 #!/bin/sh
 # `whit trace` reads rays and writes hits: the same on the device, by the float mirror on the CPU and without trees.
+# shellcheck disable=SC2086 # Options are split where they are used.
 . "$(dirname "$0")/common.sh"
 mkdir "$OUT/files"
 R=$OUT/files/rays
@@ -33,7 +34,6 @@ MANY=$SCENES/54k.json
 expect 0 "54,450 triangles without trees" \
     trace "$MANY" --input "$R" -o "$OUT/files/many" --on brute --quiet
 for command in "trace --input $R -o $OUT/files/none" "render -o $OUT/files/none.png" "probe --pixel 0,0"; do
-    # shellcheck disable=SC2086
     refuse 2 "${command%% *} --build none" "54k.json: without trees .* 54450 over all instances are too many" \
         ${command%% *} "$MANY" ${command#* } --build none
 done
@@ -45,9 +45,7 @@ check "finds the same rays blocked ($any)" test "$any" = "0 1 1 "
 # From 10^9 away floats cannot tell which of the meshes a ray meets. Integers need more iterations than some drivers allow.
 printf "\\050\\153\\156\\116$EIGHTH$EIGHTH$ZERO$MINUS$ZERO$ZERO$INF" >"$OUT/far"
 far="trace $SCENES/many.json -i $OUT/far --numerics exact"
-# shellcheck disable=SC2086
 expect 0 "a ray from far away, on the CPU" $far -o "$OUT/files/near" --on cpu
-# shellcheck disable=SC2086
 if "$WHIT" $far -o "$OUT/files/far" 2>"$OUT/stderr"; then
     check "the device has time for it" cmp "$OUT/files/near" "$OUT/files/far"
 else

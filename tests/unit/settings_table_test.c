@@ -161,12 +161,16 @@ TEST(each_kind_of_text_that_is_none_is_refused)
             bool any = row->kind == SETTING_TEXT || row->kind == SETTING_FOLDERS;
             if (!setting_has_argument(row) || (any && texts[i][0]))
                 continue;
+            const struct setting_value *word =
+                row->kind == SETTING_CHOICE || row->kind == SETTING_EITHER ? row->values : NULL;
             why[0] = '\0';
             if (settings_read(row, texts[i], &settings, why))
                 assert_true(row->kind == SETTING_NUMBER || row->kind == SETTING_COUNT ||
                             strcmp(row->name, "exposure") == 0);
             else
                 assert_true(why[0] && memcmp(&settings, &usual, sizeof usual) == 0);
+            for (; word && word->word; ++word)
+                assert_non_null(strstr(why, word->word));
         }
     }
 }
