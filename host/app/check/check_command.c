@@ -371,18 +371,19 @@ static whit_result draw_case(struct check *check, struct studio *studio, uint32_
 }
 
 /* As draw_case, but an error becomes a verdict unless it keeps all other cases from being drawn
-   too. */
+   too: where one picture has no room another one may have. */
 static whit_result run_case(struct check *check, struct studio *studio, uint32_t index)
 {
     struct check_result *result = &check->results[index];
     suite_errors_of(&check->suite, result->item);
     whit_result drawn = draw_case(check, studio, index);
-    if (drawn != WHIT_OK && !trial_ends_all(drawn)) {
+    bool ends = trial_ends_all(drawn) && drawn != WHIT_ERROR_MEMORY;
+    if (drawn != WHIT_OK && !ends) {
         const char *why = cli_said()[0] ? cli_said() : whit_result_name(drawn);
         verdict_set(result, CHECK_BROKEN, string_format("cannot be drawn: %s", why));
     }
     cli_errors_of(NULL);
-    return trial_ends_all(drawn) ? drawn : WHIT_OK;
+    return ends ? drawn : WHIT_OK;
 }
 
 static void print_result(const struct check *check, const struct check_result *result)
