@@ -2,6 +2,8 @@
 #include "app/check/verdict.h"
 #include "unit.h"
 
+#include <sys/resource.h>
+
 static const struct golden_case usual = {.name = (char[]){"room"},
                                          .ids = 1,
                                          .colors = 2,
@@ -107,6 +109,41 @@ TEST(a_part_that_goes_is_told)
     fill(&result.found, &usual);
     assert_true(verdict_find(&result, &golden));
     assert_string_equal(result.text, "input changed, picture same: light 0 of room.json (gone)");
+    verdict_finish(&result);
+    golden_finish(&golden);
+}
+
+/* Adds MANY parts to the first case. */
+enum { MANY = 3000 };
+static void put_many(struct golden *golden, uint64_t content)
+{
+    for (int i = 0; i < MANY; ++i) {
+        char key[32];
+        snprintf(key, sizeof key, "mesh %d of room.json", i);
+        uint32_t hash = golden_part_hash(key, content);
+        assert_true(golden_put_part(golden, key, hash));
+        assert_true(golden_case_add_part(&golden->cases[0], hash));
+    }
+    golden_sort(golden);
+}
+
+/* Looking up each old part's key for each new part takes many seconds of the processor. */
+TEST(many_parts_that_change_take_no_time)
+{
+    struct golden golden;
+    struct check_result result = {.item = &with_shader};
+    struct rlimit limit, before;
+    fill(&golden, &usual);
+    fill(&result.found, &usual);
+    put_many(&golden, 1);
+    put_many(&result.found, 2);
+    assert_int_equal(getrlimit(RLIMIT_CPU, &before), 0);
+    limit = (struct rlimit){2, before.rlim_max};
+    assert_int_equal(setrlimit(RLIMIT_CPU, &limit), 0);
+    assert_true(verdict_find(&result, &golden));
+    assert_int_equal(setrlimit(RLIMIT_CPU, &before), 0);
+    assert_int_equal(result.verdict, CHECK_SAME);
+    assert_non_null(strstr(result.text, " and 2996 more"));
     verdict_finish(&result);
     golden_finish(&golden);
 }

@@ -70,9 +70,9 @@ static void put_part(FILE *to, uint32_t *count, const char *key, const char *sha
 /* Whether the old case has a part with that key, whatever its content. */
 static bool knows_key(const struct golden *golden, const struct golden_case *old, const char *key)
 {
-    for (uint32_t i = 0; i < old->part_count; ++i) {
-        const char *known = golden_part_key(golden, old->parts[i]);
-        if (known && strcmp(known, key) == 0)
+    for (uint32_t i = 0; i < golden->part_count; ++i) {
+        const struct golden_part *part = &golden->parts[i];
+        if (strcmp(part->key, key) == 0 && golden_case_has_part(old, part->hash))
             return true;
     }
     return false;
