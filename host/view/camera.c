@@ -26,6 +26,15 @@ static void rotate(double v[3], const double axis[3], double angle)
         v[i] = v[i] * c + side[i] * s + axis[i] * along * (1.0 - c);
 }
 
+void camera_set(struct view_camera *camera, const double eye[3], const double target[3],
+                const double up[3], double fov_y_degrees)
+{
+    *camera = (struct view_camera){.fov_y_degrees = fov_y_degrees};
+    memcpy(camera->eye, eye, sizeof camera->eye);
+    memcpy(camera->target, target, sizeof camera->target);
+    memcpy(camera->up, up, sizeof camera->up);
+}
+
 /* Unit vectors of the picture, and the distance to the target. */
 struct frame {
     double right[3], up[3], forward[3], distance;
@@ -194,11 +203,7 @@ bool camera_from_text(const char *text, struct view_camera *camera)
     const whit_camera read = camera_of_text(text);
     if (!read.own)
         return false;
-    memcpy(camera->eye, read.eye, sizeof camera->eye);
-    memcpy(camera->target, read.target, sizeof camera->target);
-    memcpy(camera->up, read.up, sizeof camera->up);
-    camera->fov_y_degrees = read.fov_y_degrees;
-    camera->along_y = false;
+    camera_set(camera, read.eye, read.target, read.up, read.fov_y_degrees);
     double side[3], look[3];
     for (int i = 0; i < 3; ++i)
         look[i] = read.target[i] - read.eye[i];

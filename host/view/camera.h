@@ -12,6 +12,9 @@ struct view_camera {
     bool along_y; /* `up` is for this view alone: turning it goes on about y */
 };
 
+/* Makes it the camera with these values. */
+void camera_set(struct view_camera *camera, const double eye[3], const double target[3],
+                const double up[3], double fov_y_degrees);
 /* Moves the target along the view to where the middle of these bounds lies beside it; at least a
    quarter of their longest side away, for a camera among or behind the objects. The picture stays
    as it is. */

@@ -1,4 +1,3 @@
-/* The effect of a change of settings on the picture. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,3 @@
-/* Draws one picture with one session. */
 #include <math.h>
 #include <stdlib.h>
 

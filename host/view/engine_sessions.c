@@ -1,4 +1,3 @@
-/* The sessions of the engine, and the one being made. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

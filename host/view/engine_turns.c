@@ -1,5 +1,3 @@
-/* Draws two pictures with the same camera, time and size in turns, while there is nothing else to
-   do, and measures how much longer one of them takes. */
 #include "view/engine_turns.h"
 #include "view/engine_draw.h"
 #include "view/engine_private.h"
@@ -7,7 +5,7 @@
 
 /* 9 pairs are drawn at most: their confidence interval goes from the second to the eighth
    difference. 6 pairs are the fewest that give an interval of 95 % (base/sample.h). */
-enum { PAIRS = 9, PAIRS_MIN = ENGINE_PAIRS_MIN };
+enum { PAIRS = 9 };
 /* Times after which measuring stops: with 6 pairs, and with any number of pairs. */
 static const double ENOUGH_MS = 5e3, PATIENCE_MS = 20e3;
 const char ENGINE_TURNS_STOPPED[] = "something else came first";
@@ -36,7 +34,7 @@ static whit_result draw_turn(void *user, uint32_t way, uint32_t round)
     double spent_ms = whit_clock_ms() - turns->start_ms;
     if (!task.session || !engine_is_idle(engine) || turns->stopped)
         return WHIT_ERROR_CANCELLED;
-    if (spent_ms > PATIENCE_MS || (round >= PAIRS_MIN && spent_ms > ENOUGH_MS))
+    if (spent_ms > PATIENCE_MS || (round >= ENGINE_PAIRS_MIN && spent_ms > ENOUGH_MS))
         return WHIT_ERROR_CANCELLED;
     task.session->cancel = false;
     engine->drawing = task.session;
@@ -77,7 +75,7 @@ static void show_again(struct engine *engine, const struct engine_turns *turns)
     }
 }
 
-/* Tells why fewer than PAIRS_MIN pairs were drawn. */
+/* Tells why fewer than ENGINE_PAIRS_MIN pairs were drawn. */
 static const char *why_not(const struct engine *engine, const struct engine_turns *turns,
                            whit_result result)
 {
@@ -102,7 +100,7 @@ const char *engine_turns_measure(struct engine *engine, struct engine_turns *tur
     whit_result result = sample_in_turns(2, PAIRS, draw_turn, turns);
     uint32_t pairs = before->count < after->count ? before->count : after->count;
     show_again(engine, turns);
-    if (pairs < PAIRS_MIN)
+    if (pairs < ENGINE_PAIRS_MIN)
         return why_not(engine, turns, result);
     (void)sample_compare(after->values, before->values, pairs, differences, difference);
     return "";

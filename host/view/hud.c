@@ -1,4 +1,3 @@
-/* Draws figures, the cheat sheet and messages over the picture. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -498,16 +497,16 @@ static void draw_legends(const struct view *view)
     const struct compare *compare = &view->compare;
     for (int side = 0; side < (compare->mode == COMPARE_SPLIT ? 2 : 1); ++side) {
         const struct engine_frame *frame = side ? &compare->other : &view->frame;
-        char rays[64], title[160];
+        char title[160];
         if (view->hud == HUD_OFF || !frame->rgba || frame->settings.paint == PAINT_COLOR ||
             compare->mode == COMPARE_DIFFERENCE)
             continue;
-        snprintf(rays, sizeof rays, "%s", value_word(values_rays, (int)frame->settings.paint_rays));
         snprintf(title, sizeof title, "%s%s of %s rays%s",
                  compare->mode != COMPARE_SPLIT ? ""
                  : side                         ? "B: "
                                                 : "A: ",
-                 value_title(values_view, (int)frame->settings.paint), rays,
+                 value_title(values_view, (int)frame->settings.paint),
+                 value_word(values_rays, (int)frame->settings.paint_rays),
                  frame->settings.paint_scale > 0.0 ? "" : ", scale by the picture");
         palette_legend(&view->palette, side ? "legend B" : "legend A", title, frame->scale);
     }

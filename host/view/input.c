@@ -1,4 +1,3 @@
-/* The mouse and held keys, which move the camera; playing animations. */
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,3 @@
-/* The table of keys: their actions, their rows of the cheat sheet, and the states that it shows. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -162,10 +161,7 @@ static void look_as_whit(struct view *view)
     whit_camera camera;
     if (whit_scene_choose_camera(view->scene->scene, &camera) != WHIT_OK)
         return;
-    memcpy(view->camera.eye, camera.eye, sizeof camera.eye);
-    memcpy(view->camera.target, camera.target, sizeof camera.target);
-    memcpy(view->camera.up, camera.up, sizeof camera.up);
-    view->camera.fov_y_degrees = camera.fov_y_degrees;
+    camera_set(&view->camera, camera.eye, camera.target, camera.up, camera.fov_y_degrees);
     view_moved(view);
     view_say(view, "whit's own camera");
 }

@@ -1,4 +1,3 @@
-/* Measures what the user waits for: how long pictures take, and the time between them. */
 #include <string.h>
 
 #include "base/clock.h"

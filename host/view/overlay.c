@@ -1,4 +1,3 @@
-/* Draws lines of the scene over the picture. */
 #include <string.h>
 
 #include "view/overlay.h"

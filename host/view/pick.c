@@ -1,4 +1,3 @@
-/* A pixel that is clicked on: the hit there, and the rays that made its colour. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,3 @@
-/* Key P: the price list of this view. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

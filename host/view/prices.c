@@ -199,6 +199,8 @@ void prices_stop(struct prices *prices)
 
 bool prices_have_news(struct prices *prices)
 {
+    if (!prices)
+        return false;
     pthread_mutex_lock(&prices->lock);
     bool news = prices->news;
     prices->news = false;

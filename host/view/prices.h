@@ -42,7 +42,7 @@ struct prices_state {
     const struct price_strip *strip; /* likewise */
     const struct settings *settings; /* likewise: of the picture whose prices these are */
 };
-/* Whether there is something new since the last call. */
+/* Whether there is something new since the last call; NULL is fine. */
 bool prices_have_news(struct prices *prices);
 bool prices_are_still(struct prices *prices); /* finished; NULL is fine */
 /* Gives the price of an effect; its `known` is false until it was measured. */

@@ -1,4 +1,3 @@
-/* Replays events from a file, and records them to one. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -82,7 +81,7 @@ static bool is_priced(struct view *view)
 {
     if (!prices_are_still(view->prices))
         return false;
-    view->dirty |= view->prices && prices_have_news(view->prices);
+    view->dirty |= prices_have_news(view->prices);
     return !view->dirty;
 }
 

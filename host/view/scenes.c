@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/input.h"
+#include "base/vec.h"
 #include "base/watch.h"
 #include "view/remembered_cameras.h"
 #include "view/scenes.h"
@@ -22,17 +23,11 @@ static void read_camera(struct view *view, uint32_t index)
 {
     whit_camera_info info;
     whit_scene_get_camera(view->scene->scene, index, &info);
-    view->camera = (struct view_camera){.fov_y_degrees = info.fov_y_degrees};
-    memcpy(view->camera.eye, info.eye, sizeof info.eye);
-    memcpy(view->camera.target, info.target, sizeof info.target);
-    memcpy(view->camera.up, info.up, sizeof info.up);
+    camera_set(&view->camera, info.eye, info.target, info.up, info.fov_y_degrees);
     if (info.target_is_direction)
         camera_reach(&view->camera, view->scene->info.objects_lo, view->scene->info.objects_hi);
     if (!(info.fov_y_degrees > 0.0)) { /* orthographic or panorama: it has no angle */
-        double distance = 0.0;
-        for (int i = 0; i < 3; ++i)
-            distance += pow(view->camera.target[i] - view->camera.eye[i], 2.0);
-        distance = sqrt(distance);
+        double distance = double3_distance(view->camera.target, view->camera.eye);
         view->camera.fov_y_degrees =
             info.height > 0.0 && distance > 0.0
                 ? 2.0 * atan(0.5 * info.height / distance) * 57.29577951308232

@@ -40,22 +40,25 @@ static void put_bool(json_t *object, const char *name, bool value)
     json_object_set_new(object, name, json_boolean(value));
 }
 
-static void put_hash(json_t *object, const char *name, const void *data, size_t bytes)
+static void put_hash(json_t *object, const char *name, uint64_t hash)
 {
     char text[17];
-    snprintf(text, sizeof text, "%016" PRIx64, data ? hash_bytes(HASH_START, data, bytes) : 0);
+    snprintf(text, sizeof text, "%016" PRIx64, hash);
     put_text(object, name, text);
+}
+
+static uint64_t hash_of(const void *data, size_t bytes)
+{
+    return data ? hash_bytes(HASH_START, data, bytes) : 0;
 }
 
 static json_t *shader_json(const struct shaders *shaders)
 {
     const struct shader_ref *shown = shaders->shown;
-    char hash[17];
     if (!shown)
         return json_null();
     json_t *object = json_object();
-    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)shown->info.hash);
-    put_text(object, "hash", hash);
+    put_hash(object, "hash", shown->info.hash);
     put_count(object, "files", shown->info.file_count);
     put_count(object, "sliders", shown->info.slider_count);
     put_text(object, "changed", shaders->line);
@@ -111,8 +114,8 @@ static json_t *frame_json(const struct engine_frame *frame)
     put_number(object, "stages_ms", stages_ms(&frame->stats));
     put_number(object, "visits", frame->visits);
     put_count(object, "visits_rays", frame->visits_rays);
-    put_hash(object, "ids", frame->ids ? whit_image_words(frame->ids) : NULL, pixels * 8);
-    put_hash(object, "pixels", frame->rgba, pixels * 4);
+    put_hash(object, "ids", hash_of(frame->ids ? whit_image_words(frame->ids) : NULL, pixels * 8));
+    put_hash(object, "pixels", hash_of(frame->rgba, pixels * 4));
     return object;
 }
 
@@ -148,10 +151,10 @@ static json_t *compare_json(const struct view *view)
     put_bool(object, "known", figures->known);
     if (compare->mode == COMPARE_DIFFERENCE) {
         put_number(object, "scale", heat->scale);
-        put_hash(object, "heat", heat->rgba, (size_t)heat->width * heat->height * 4);
+        put_hash(object, "heat", hash_of(heat->rgba, (size_t)heat->width * heat->height * 4));
     } else {
-        put_hash(object, "mixed", compare->mixed,
-                 (size_t)compare->mixed_width * compare->mixed_height * 4);
+        put_hash(object, "mixed",
+                 hash_of(compare->mixed, (size_t)compare->mixed_width * compare->mixed_height * 4));
     }
     if (!figures->known)
         return object;

@@ -390,8 +390,8 @@ static whit_result step(struct view *view)
     if (result == WHIT_OK)
         result = take_status(view);
     pick_take(view);
-    view->dirty |= view->prices && prices_have_news(view->prices);
-    view->dirty |= view->panels.measured && prices_have_news(view->panels.measured);
+    view->dirty |= prices_have_news(view->prices);
+    view->dirty |= prices_have_news(view->panels.measured);
     prices_part(view);
     wish_step(view);
     panels_step(view);

@@ -186,11 +186,6 @@ refuse 2 "--frames 0" "1" view "$CUBE" --frames 0
 
 # ---- No window ----
 
-(
-    unset DISPLAY
-    refuse 3 "no display" "whit render" view "$CUBE" --frames 1
-    exit $FAILED
-) || FAILED=1
 # A display that goes away while the window is open.
 mkfifo "$OUT/number" "$OUT/shown"
 printf 'still\nstate shown\nwait 600000\n' >"$OUT/waits"
