@@ -5,94 +5,41 @@
 #include <vulkan/vulkan.h>
 
 #include "../wrapped.h"
-#include "base/clock.h"
-#include "device_fixture.h"
-#include "unit.h"
-#include "view/engine.h"
+#include "engine_fixture.h"
 
-enum { WIDTH = 96, HEIGHT = 64 };
-static const double PATIENCE_MS = 60e3;
-
-static struct settings settings_of(const char *scene)
+static void begin(const char *scene)
 {
-    struct settings settings = {.picture = {.width = WIDTH, .height = HEIGHT}};
-    snprintf(settings.scene, sizeof settings.scene, "%s/%s", WHIT_SCENES_DIR, scene);
-    return settings;
-}
-
-/* Waits for the engine a moment and takes its picture. Gives whether there is a new one. */
-static bool take(struct engine *engine, struct engine_frame *frame, double start_ms)
-{
-    engine_wait(engine, 20.0);
-    assert_true(clock_ms() - start_ms < PATIENCE_MS); /* it hangs */
-    return engine_take(engine, false, frame);
-}
-
-/* Takes pictures until the engine has nothing left to do. */
-static void take_both(struct engine *engine, struct engine_frame *frame, struct engine_frame *other)
-{
-    double start_ms = clock_ms();
-    while (!engine_is_still(engine)) {
-        (void)take(engine, frame, start_ms);
-        if (other)
-            (void)engine_take(engine, true, other);
-    }
-    (void)engine_take(engine, false, frame);
-}
-
-static void take_all(struct engine *engine, struct engine_frame *frame)
-{
-    take_both(engine, frame, NULL);
-}
-
-/* An engine that has drawn this. */
-static struct engine *engine_of(const struct engine_params *params, const struct settings *settings,
-                                struct engine_frame *frame)
-{
-    struct engine *engine;
-    *frame = (struct engine_frame){0};
-    assert_int_equal(engine_create(params, &engine), WHIT_OK);
-    engine_ask(engine, settings, false);
-    take_all(engine, frame);
-    assert_true(frame->whole);
-    return engine;
-}
-
-static void close_engine(struct engine *engine, struct engine_frame *frame)
-{
-    engine_frame_finish(frame);
-    assert_int_equal(engine_destroy(engine), 0);
+    settings = settings_of(scene);
+    engine_begin(&(struct engine_params){0});
 }
 
 /* Lets each device be lost at its n-th submission: while the engine is opened, later, or not at
    all. `once`: only the first device is lost. */
 static bool lose_at(unsigned n, bool once, bool *gave_up)
 {
-    struct engine *engine;
-    struct engine_frame frame = {0};
-    struct engine_status status;
     char fault[32];
     snprintf(fault, sizeof fault, "vkQueueSubmit:%u", n);
     setenv("WHIT_FAULT", fault, 1);
+    frame = (struct engine_frame){0};
+    settings = settings_of("cube.json");
     assert_int_equal(engine_create(&(struct engine_params){0}, &engine), WHIT_OK);
-    struct settings settings = settings_of("cube.json");
     engine_ask(engine, &settings, false);
     if (once) {
+        enum session_stage stage;
         do {
             engine_wait(engine, 20.0);
-            engine_get_status(engine, &status);
-        } while (status.stage != SESSION_COMPILING && status.stage != SESSION_DONE);
+            stage = status_now().stage;
+        } while (stage != SESSION_COMPILING && stage != SESSION_DONE);
         unsetenv("WHIT_FAULT");
     }
-    take_all(engine, &frame);
-    engine_get_status(engine, &status);
+    take_all();
+    const struct engine_status status = status_now();
     bool whole = frame.number > 0 && frame.whole;
     *gave_up = status.device_lost;
     if (!whole)
         assert_true(status.error[0] != '\0'); /* it says why */
-    engine_frame_finish(&frame);
     unsetenv("WHIT_FAULT");
-    assert_int_equal(engine_destroy(engine), 0);
+    engine_end();
     return whole;
 }
 
@@ -123,11 +70,9 @@ TEST(a_lost_device_is_made_again_or_given_up)
    renderer is made for a small one. */
 TEST(large_trees_are_drawn_in_packets)
 {
-    struct engine_frame frame;
-    struct settings settings = settings_of("8k.json");
-    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
+    begin("8k.json");
     assert_true(frame.stats.packets == (frame.device.subgroup_size == 8)); /* lavapipe */
-    close_engine(engine, &frame);
+    engine_end();
 }
 
 /* ---- At rest ---- */
@@ -135,48 +80,43 @@ TEST(large_trees_are_drawn_in_packets)
 /* Every 8th, 4th and 2nd pixel are shown before the whole picture, unless that is quick. */
 TEST(a_picture_comes_in_steps)
 {
-    struct engine_frame frame;
-    struct settings settings = settings_of("cube.json");
-    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
+    begin("cube.json");
     assert_int_equal(frame.number, 4);
     assert_int_equal(frame.first, 1);
     assert_int_equal(frame.divisor, 1);
-    close_engine(engine, &frame);
-    engine = engine_of(&(struct engine_params){.budget_ms = 1e9}, &settings, &frame);
+    engine_end();
+    engine_begin(&(struct engine_params){.budget_ms = 1e9});
     uint64_t before = frame.number;
     settings.picture.exposure_ev = 1.0;
-    engine_ask(engine, &settings, false);
-    take_all(engine, &frame);
+    draw();
     assert_int_equal(frame.number, before + 1);
-    close_engine(engine, &frame);
+    engine_end();
 }
 
 /* After the steps of the first sample, pictures of four samples and of all samples of the settings
    are shown, and no sample is drawn twice. */
 TEST(samples_of_the_settings_are_added_to_the_first)
 {
-    struct engine_frame frame;
-    struct settings settings = settings_of("cube.json");
+    settings = settings_of("cube.json");
     settings.picture.sampling.count = 16;
-    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
+    engine_begin(&(struct engine_params){0});
     assert_int_equal(frame.number, 4 + 2);
     assert_int_equal(frame.samples, 16);
     assert_int_equal(frame.estimate_count, 4); /* of 2, 4, 8 and 16: it was not drawn at once */
     assert_int_equal(frame.stats.rays_primary, 16 * WIDTH * HEIGHT);
     assert_int_equal(frame.stats.pixels_by_samples[2], WIDTH * HEIGHT);
-    close_engine(engine, &frame);
+    engine_end();
 }
 
 /* A picture that is asked for while another one is refined is drawn at once, and is refined in its
    turn. */
 TEST(whoever_moves_on_does_not_wait_for_refining)
 {
-    struct engine_frame frame;
-    struct settings settings = settings_of("cube.json");
-    struct engine *engine = engine_of(&(struct engine_params){.refine = true}, &settings, &frame);
+    settings = settings_of("cube.json");
+    engine_begin(&(struct engine_params){.refine = true});
     double start_ms = clock_ms();
     while (!frame.refined || frame.samples < 16) {
-        (void)take(engine, &frame, start_ms);
+        (void)take(start_ms);
         assert_true(frame.refined ? !frame.ids && frame.samples > 1 : frame.samples == 1);
     }
     for (uint32_t depth = 0; depth < 3; ++depth) {
@@ -184,16 +124,16 @@ TEST(whoever_moves_on_does_not_wait_for_refining)
         settings.picture.depth = depth + 1;
         engine_ask(engine, &settings, false);
         while (frame.number == before || frame.refined)
-            (void)take(engine, &frame, start_ms);
+            (void)take(start_ms);
         assert_int_equal(frame.settings.picture.depth, depth + 1);
         assert_int_equal(frame.samples, 1);
         while (!frame.refined)
-            (void)take(engine, &frame, start_ms);
+            (void)take(start_ms);
         assert_int_equal(frame.settings.picture.depth, depth + 1);
     }
     assert_false(engine_is_refined(engine));
     engine_set_rest(engine, false, false);
-    close_engine(engine, &frame);
+    engine_end();
 }
 
 /* ---- Memory ---- */
@@ -210,39 +150,29 @@ WRAPPED(void *, malloc, size_t bytes)
     return __real_malloc(bytes);
 }
 
-static void draw(struct engine *engine, const struct settings *settings, struct engine_frame *frame)
-{
-    engine_frame_finish(frame);
-    engine_ask(engine, settings, false);
-    take_all(engine, frame);
-}
-
 /* Draws while the n-th allocation of memory fails: the picture is whole, or the status says why it
    is not. Gives whether there was an n-th allocation. */
-static bool draws_without(unsigned n, struct engine *engine, const struct settings *settings,
-                          const struct engine_frame *right, bool *said)
+static bool draws_without(unsigned n, const struct engine_frame *right, bool *said)
 {
-    struct engine_frame frame = {0};
-    struct engine_status status;
-    struct settings other = *settings; /* another one each time: the last one is kept */
-    snprintf(other.camera, sizeof other.camera, "%g,2,6,0,1,0,0,1,0,40", 0.001 * (double)n);
-    draw(engine, &other, &frame);
+    const struct settings kept = settings;
+    /* another one each time: the last one is kept */
+    snprintf(settings.camera, sizeof settings.camera, "%g,2,6,0,1,0,0,1,0,40", 0.001 * (double)n);
+    draw();
     assert_true(frame.whole);
-    engine_get_status(engine, &status);
-    assert_string_equal(status.error, ""); /* a later picture went well */
+    assert_string_equal(status_now().error, ""); /* a later picture went well */
+    settings = kept;
+    engine_frame_finish(&frame);
     atomic_store(&asked_for, 0);
     atomic_store(&fail_at, n);
-    draw(engine, settings, &frame);
+    draw();
     atomic_store(&fail_at, 0);
-    engine_get_status(engine, &status);
-    *said = status.error[0] != '\0';
+    *said = status_now().error[0] != '\0';
     bool same = frame.number > 0 && frame.whole &&
                 memcmp(frame.rgba, right->rgba, (size_t)WIDTH * HEIGHT * 4) == 0;
     if (!*said && !same)
         print_message("block %u is missing, the picture is %s, and nothing is said\n", n,
                       frame.number ? "another one" : "missing too");
     assert_true(*said || same);
-    engine_frame_finish(&frame);
     return atomic_load(&asked_for) >= n;
 }
 
@@ -251,18 +181,20 @@ TEST(memory_that_runs_out_is_said)
     static const enum settings_paint paints[] = {PAINT_COLOR, PAINT_VISITS};
     window_thread = pthread_self();
     for (int i = 0; i < 2; ++i) {
-        struct engine_frame right;
-        struct settings settings = settings_of("cube.json");
         uint32_t said_count = 0, blocks = 0;
         bool said = false;
+        settings = settings_of("cube.json");
         settings.paint = paints[i];
-        struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &right);
-        while (draws_without(blocks + 1, engine, &settings, &right, &said) && ++blocks < 1000)
+        engine_begin(&(struct engine_params){0});
+        struct engine_frame right = frame;
+        frame = (struct engine_frame){0};
+        while (draws_without(blocks + 1, &right, &said) && ++blocks < 1000)
             said_count += said;
         print_message("view %d: %u blocks, %u of them missed and said so\n", (int)paints[i], blocks,
                       said_count);
         assert_true(said_count >= 2 && blocks < 1000);
-        close_engine(engine, &right);
+        engine_frame_finish(&right);
+        engine_end();
     }
 }
 
@@ -280,32 +212,27 @@ WRAPPED(VkResult, vkAllocateMemory, VkDevice device, const VkMemoryAllocateInfo 
    on. */
 TEST(memory_that_runs_out_while_a_change_is_timed_is_said)
 {
-    struct engine_frame frame;
-    struct engine_status status;
-    struct settings settings = settings_of("whitted.json");
+    settings = settings_of("whitted.json");
     settings.picture.depth = 4;
-    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
+    engine_begin(&(struct engine_params){0});
     settings.picture.depth = 8;
-    draw(engine, &settings, &frame);
+    draw();
     atomic_store(&device_is_full, true);
     engine_set_rest(engine, false, true); /* times the change */
     double start_ms = clock_ms();
-    do {
-        (void)take(engine, &frame, start_ms);
-        engine_get_status(engine, &status);
-    } while (!status.change.over);
-    assert_int_equal(status.change.number, 1);
-    assert_int_equal(status.change.ms.count, 0);
-    take_all(engine, &frame);
-    engine_get_status(engine, &status);
-    assert_string_not_equal(status.error, "");
+    do
+        (void)take(start_ms);
+    while (!status_now().change.over);
+    assert_int_equal(status_now().change.number, 1);
+    assert_int_equal(status_now().change.ms.count, 0);
+    take_all();
+    assert_string_not_equal(status_now().error, "");
     atomic_store(&device_is_full, false);
     settings.picture.depth = 4;
-    draw(engine, &settings, &frame);
-    engine_get_status(engine, &status);
+    draw();
     assert_true(frame.whole);
-    assert_string_equal(status.error, "");
-    close_engine(engine, &frame);
+    assert_string_equal(status_now().error, "");
+    engine_end();
 }
 
 static atomic_bool images_fail;
@@ -322,24 +249,21 @@ WRAPPED(whit_result, whit_image_create, uint32_t width, uint32_t height, uint32_
 /* A refined picture keeps its samples under another traversal, if there is memory to show them. */
 TEST(memory_that_runs_out_for_kept_samples_is_survived)
 {
-    struct engine_frame frame;
-    struct engine_status status;
-    struct settings settings = settings_of("cube.json");
-    struct engine *engine = engine_of(&(struct engine_params){.refine = true}, &settings, &frame);
+    settings = settings_of("cube.json");
+    engine_begin(&(struct engine_params){.refine = true});
     double start_ms = clock_ms();
     while (!frame.refined)
-        (void)take(engine, &frame, start_ms);
+        (void)take(start_ms);
     engine_set_rest(engine, false, false);
     for (int i = 0; i < 2; ++i) {
         settings.picture.traversal = i == 0 ? WHIT_TRAVERSAL_SIGN : WHIT_TRAVERSAL_BASIC;
         atomic_store(&images_fail, i == 1);
-        draw(engine, &settings, &frame);
+        draw();
         atomic_store(&images_fail, false);
-        engine_get_status(engine, &status);
-        assert_string_equal(status.error, "");
+        assert_string_equal(status_now().error, "");
         assert_true(frame.whole && frame.refined == (i == 0));
     }
-    close_engine(engine, &frame);
+    engine_end();
 }
 
 /* ---- Moving cameras ---- */
@@ -347,12 +271,11 @@ TEST(memory_that_runs_out_for_kept_samples_is_survived)
 /* Pictures are shown even if the camera turns faster than they are drawn. */
 TEST(no_look_is_cut_short)
 {
-    struct engine_frame frame;
     uint32_t shown = 0, asked = 0;
-    struct settings settings = settings_of("default.json");
+    settings = settings_of("default.json");
     settings.picture.width = 160;
     settings.picture.height = 108;
-    struct engine *engine = engine_of(&(struct engine_params){.budget_ms = 1e4}, &settings, &frame);
+    engine_begin(&(struct engine_params){.budget_ms = 1e4});
     double picture_ms = frame.draw_ms, start_ms = clock_ms();
     while (shown < 3) { /* if new questions cancelled pictures, none would be shown */
         snprintf(settings.camera, sizeof settings.camera, "%g,2,6,0,1,0,0,1,0,40",
@@ -364,56 +287,45 @@ TEST(no_look_is_cut_short)
     }
     print_message("%u pictures of %.0f ms for %u questions in %.0f ms\n", shown, picture_ms, asked,
                   clock_ms() - start_ms);
-    engine_ask(engine, &settings, false);
-    take_all(engine, &frame);
+    draw();
     assert_string_equal(frame.settings.camera, settings.camera); /* the last one is answered */
     assert_true(frame.whole);
-    close_engine(engine, &frame);
+    engine_end();
 }
 
 /* While another tree is made the picture stays as it is, and no coarser one is shown. */
 TEST(a_switch_keeps_the_picture)
 {
-    struct engine_frame frame;
-    struct settings settings = settings_of("8k.json");
-    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
+    begin("8k.json");
     settings.trees.build = WHIT_BUILD_MEDIAN;
     engine_ask(engine, &settings, false);
     double start_ms = clock_ms();
     while (!engine_is_still(engine)) {
-        if (take(engine, &frame, start_ms))
+        if (take(start_ms))
             assert_int_equal(frame.settings.trees.build, WHIT_BUILD_MEDIAN);
     }
-    struct engine_status status;
-    engine_get_status(engine, &status);
     assert_true(frame.whole);
-    assert_int_equal(status.change.number, 1);
-    assert_int_equal(status.change.difference.other_ids, 0);
-    close_engine(engine, &frame);
+    assert_int_equal(status_now().change.number, 1);
+    assert_int_equal(status_now().change.difference.other_ids, 0);
+    engine_end();
 }
 
 /* Where one of two scenes side by side cannot be read, its error stays when the camera turns and
    the other scene is drawn again. */
 TEST(an_error_outlives_the_other_side)
 {
-    struct engine_frame frame, other = {0};
-    struct engine_status status;
-    struct settings settings = settings_of("cube.json");
-    struct engine *engine = engine_of(&(struct engine_params){0}, &settings, &frame);
+    begin("cube.json");
     engine_ask_other(engine, &settings);
-    take_both(engine, &frame, &other);
+    take_all();
     settings = settings_of("nowhere.json");
-    engine_ask(engine, &settings, false);
-    take_both(engine, &frame, &other);
+    draw();
     uint64_t number = other.number;
     snprintf(settings.camera, sizeof settings.camera, "0,2,6,0,1,0,0,1,0,40");
     struct settings beside = settings_of("cube.json");
     settings_set_camera(&beside, &settings);
     engine_ask_other(engine, &beside);
-    take_both(engine, &frame, &other);
+    take_all();
     assert_true(other.number > number);
-    engine_get_status(engine, &status);
-    assert_non_null(strstr(status.error, "nowhere.json"));
-    engine_frame_finish(&other);
-    close_engine(engine, &frame);
+    assert_non_null(strstr(status_now().error, "nowhere.json"));
+    engine_end();
 }

@@ -2,44 +2,26 @@
 #include <stdatomic.h>
 
 #include "../wrapped.h"
-#include "base/clock.h"
+#include "engine_fixture.h"
 #include "folder_fixture.h"
 #include "view/shaders.h"
 #include "whit/whit_compare.h"
 
-enum { WIDTH = 96, HEIGHT = 64 };
-static const double PATIENCE_MS = 60e3;
-
 static whit_shader_compiler *compiler;
-static struct engine *engine;
-static struct settings settings;
-static struct engine_frame frame;
 
 static void save(const char *text)
 {
     put_file(settings.shader, text, strlen(text));
 }
 
-static struct engine_status status_now(void)
-{
-    struct engine_status status;
-    engine_get_status(engine, &status);
-    return status;
-}
-
-/* Takes pictures until there is nothing to be done, and measures the reload where `measured`. */
-static void take_all(bool measured)
+/* Takes pictures until nothing more is known about the reload. */
+static void measure(void)
 {
     double start_ms = clock_ms();
-    if (measured)
-        engine_measure_reload(engine);
-    while (!engine_is_still(engine) || (measured && !status_now().reload.over)) {
-        engine_wait(engine, 5.0);
-        (void)engine_take(engine, false, &frame);
-        assert_true(clock_ms() - start_ms < PATIENCE_MS); /* it hangs */
-    }
-    (void)engine_take(engine, false, &frame);
-    assert_true(frame.whole);
+    engine_measure_reload(engine);
+    while (!status_now().reload.over)
+        (void)take(start_ms);
+    take_all();
 }
 
 static void ask(const char *text)
@@ -53,25 +35,19 @@ static int begin(void **state)
 {
     if (folder_begin(state) != 0)
         return -1;
-    settings = (struct settings){.picture = {.width = WIDTH, .height = HEIGHT}};
-    snprintf(settings.scene, sizeof settings.scene, "%s/cube.json", WHIT_SCENES_DIR);
+    settings = settings_of("cube.json");
     snprintf(settings.shader, sizeof settings.shader, "%s/a.glsl", folder);
-    frame = (struct engine_frame){0};
     const whit_log silent = {0};
     assert_int_equal(whit_shader_compiler_create(NULL, &silent, &compiler), WHIT_OK);
-    const struct engine_params params = {.compiler = compiler};
-    assert_int_equal(engine_create(&params, &engine), WHIT_OK);
     save("vec3 post(ivec2 at, vec3 color) { return color; }\n");
-    engine_ask(engine, &settings, false);
-    take_all(false);
+    engine_begin(&(struct engine_params){.compiler = compiler});
     assert_int_equal(status_now().reload.number, 0);
     return 0;
 }
 
 static int end(void **state)
 {
-    engine_frame_finish(&frame);
-    assert_int_equal(engine_destroy(engine), 0);
+    engine_end();
     whit_shader_compiler_destroy(compiler);
     return folder_end(state);
 }
@@ -90,9 +66,9 @@ TEST_IN(a_save_is_measured_against_the_version_before, begin, end)
     struct engine_frame before = frame;
     frame = (struct engine_frame){.number = before.number};
     ask("vec3 post(ivec2 at, vec3 color) { return at.x == 40 ? vec3(0.5) : color; }\n");
-    take_all(false);
+    take_all();
     assert_false(status_now().reload.over); /* measuring was not asked for */
-    take_all(true);
+    measure();
     const struct engine_reload reload = status_now().reload;
     assert_int_equal(reload.number, 1);
     assert_true(reload.compared && reload.has_colors && reload.has_flip);
@@ -108,11 +84,9 @@ TEST_IN(a_save_is_measured_against_the_version_before, begin, end)
     before = frame;
     frame = (struct engine_frame){.number = before.number};
     settings.picture.exposure_ev = 1.0;
-    engine_ask(engine, &settings, false);
-    take_all(false);
+    draw();
     settings.picture.exposure_ev = 0.0;
-    engine_ask(engine, &settings, false);
-    take_all(false);
+    draw();
     assert_memory_equal(before.rgba, frame.rgba, (size_t)WIDTH * HEIGHT * 4);
     assert_int_equal(status_now().reload.number, 1);
     engine_frame_finish(&before);
@@ -142,7 +116,7 @@ TEST_IN(the_first_save_finds_a_session, begin, end)
         (void)engine_take(engine, false, &frame);
     }
     assert_int_equal(frame.settings.shader_reload, settings.shader_reload);
-    take_all(false);
+    take_all();
     assert_int_equal(status_now().reload.number, 1);
 }
 
@@ -159,7 +133,7 @@ WRAPPED(whit_result, whit_scene_choose_camera, const whit_scene *scene, whit_cam
 TEST_IN(a_version_without_a_camera_is_made_again, begin, end)
 {
     ask("vec3 post(ivec2 at, vec3 color) { return color.bgr; }\n");
-    take_all(false); /* the session of the first version is free for the next one */
+    take_all(); /* the session of the first version is free for the next one */
     snprintf(settings.camera, sizeof settings.camera, "auto");
     atomic_store(&cameras_missing, true);
     ask("vec3 post(ivec2 at, vec3 color) { return vec3(1.0, 0.0, 0.0); }\n");
@@ -170,8 +144,7 @@ TEST_IN(a_version_without_a_camera_is_made_again, begin, end)
     }
     atomic_store(&cameras_missing, false);
     settings.picture.exposure_ev = 1.0;
-    engine_ask(engine, &settings, false);
-    take_all(false);
+    draw();
     assert_int_equal(frame.settings.shader_reload, settings.shader_reload);
     assert_memory_equal(frame.rgba, ((const uint8_t[]){255, 0, 0, 255}), 4);
 }
@@ -192,15 +165,15 @@ TEST_IN(measuring_gives_way, begin, end)
     assert_true(reload.over && reload.compared && !reload.has_flip);
     assert_int_equal(reload.ms.count, 0);
     assert_string_equal(reload.why, "something else came first");
-    take_all(true);
+    measure();
     assert_int_equal(status_now().reload.ms.count, 0);
 
     /* With new settings there is no earlier picture to compare with, but both versions can be drawn
        with these settings and timed. */
     settings.picture.exposure_ev = 1.0;
     ask("vec3 post(ivec2 at, vec3 color) { return color.grb; }\n");
-    take_all(false);
-    take_all(true);
+    take_all();
+    measure();
     reload = status_now().reload;
     assert_int_equal(reload.number, 2);
     assert_false(reload.compared || reload.has_flip);
