@@ -228,8 +228,10 @@ static bool skip_property(struct cursor *from, const struct property *property)
 
 /* --- strips --------------------------------------------------------------------------------- */
 
+/* The triangles that strips become: assimp 5.2 reads only the last one of a strip. */
 struct strips {
-    uint32_t *corners; /* 3 vertex indices per triangle */
+    const struct element *element; /* NULL: there are none */
+    uint32_t *corners;             /* 3 vertex indices per triangle */
     uint32_t count, capacity;
     uint64_t vertex_count;
 };
@@ -256,94 +258,48 @@ static bool add_vertex(struct strips *strips, struct strip *strip, uint32_t vert
     return good;
 }
 
-enum outcome { READ, DAMAGED, NO_MEMORY };
-
 /* Reads one list of vertices; -1 in it begins a new strip. */
-static enum outcome read_strip(struct cursor *from, const struct property *list,
-                               struct strips *strips)
+static whit_result read_strip(struct cursor *from, const struct property *list,
+                              struct strips *strips)
 {
     struct strip strip = {0};
     int64_t count, vertex;
     if (!read_whole(from, list->count, &count) || count < 0)
-        return DAMAGED;
+        return WHIT_ERROR_INPUT;
     for (int64_t i = 0; i < count; i++) {
         if (!read_whole(from, list->value, &vertex))
-            return DAMAGED;
+            return WHIT_ERROR_INPUT;
         bool restart = vertex == -1 || vertex == UINT32_MAX;
         if (restart)
             strip.length = 0;
         else if (vertex < 0 || (uint64_t)vertex >= strips->vertex_count)
-            return DAMAGED;
+            return WHIT_ERROR_INPUT;
         else if (!add_vertex(strips, &strip, (uint32_t)vertex))
-            return NO_MEMORY;
+            return WHIT_ERROR_MEMORY;
     }
-    return READ;
+    return WHIT_OK;
 }
 
-/* Reads or skips all instances of an element; without properties they have no data. If `strips` is
-   non-NULL, the first list property of each instance is read as a strip. */
-static enum outcome read_element(struct cursor *from, const struct header *header,
-                                 const struct element *element, struct strips *strips)
+/* Reads the first list of each instance. */
+static whit_result read_strips(struct cursor *from, const struct header *header,
+                               struct strips *strips)
 {
+    const struct element *element = strips->element;
     for (unsigned long long i = 0; element->property_count && i < element->count; i++) {
         bool found = false;
         for (uint32_t k = 0; k < element->property_count; k++) {
             const struct property *property = &header->properties[element->first_property + k];
-            enum outcome outcome = READ;
-            if (strips && property->list && !found)
-                outcome = read_strip(from, property, strips);
+            whit_result result = WHIT_OK;
+            if (property->list && !found)
+                result = read_strip(from, property, strips);
             else if (!skip_property(from, property))
-                outcome = DAMAGED;
+                result = WHIT_ERROR_INPUT;
             found |= property->list;
-            if (outcome != READ)
-                return outcome;
+            if (result != WHIT_OK)
+                return result;
         }
     }
-    while (from->format == FORMAT_ASCII && from->at < from->end && *from->at <= ' ')
-        from->at++;
-    return READ;
-}
-
-/* --- the file that assimp gets -------------------------------------------------------------- */
-
-static void write_triangle(FILE *file, enum format format, const uint32_t *corners)
-{
-    if (format == FORMAT_ASCII) {
-        fprintf(file, "3 %u %u %u\n", corners[0], corners[1], corners[2]);
-        return;
-    }
-    fputc(3, file);
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 4; k++)
-            fputc((int)(corners[i] >> 8 * (format == FORMAT_BIG ? 3 - k : k) & 255), file);
-}
-
-/* Rewrites the file with faces in place of `element`, whose data are the bytes [begin, end). */
-static bool write_faces(uint8_t **data, size_t *size_bytes, const struct header *header,
-                        const struct element *element, const struct strips *strips, size_t begin,
-                        size_t end)
-{
-    char *text = NULL;
-    size_t bytes;
-    FILE *file = open_memstream(&text, &bytes);
-    if (!file)
-        return false;
-    fwrite(*data, 1, element->begin, file);
-    fprintf(file, "element face %u\nproperty list uchar int vertex_indices\n", strips->count / 3);
-    fwrite(*data + element->end, 1, begin - element->end, file);
-    for (uint32_t i = 0; i < strips->count; i += 3)
-        write_triangle(file, header->format, strips->corners + i);
-    fwrite(*data + end, 1, *size_bytes - end, file);
-    bool good = !ferror(file);
-    good = fclose(file) == 0 && good;
-    if (!good) {
-        free(text);
-        return false;
-    }
-    free(*data);
-    *data = (uint8_t *)text; /* a zero byte follows, as after file_read */
-    *size_bytes = bytes;
-    return true;
+    return WHIT_OK;
 }
 
 static const struct element *find_element(const struct header *header, const char *name)
@@ -352,32 +308,6 @@ static const struct element *find_element(const struct header *header, const cha
         if (strcmp(header->elements[i].name, name) == 0)
             return &header->elements[i];
     return NULL;
-}
-
-static whit_result replace_strips(const whit_log *log, const char *path,
-                                  const struct header *header, const struct element *element,
-                                  uint8_t **data, size_t *size_bytes)
-{
-    const struct element *vertices = find_element(header, "vertex"), *at = header->elements;
-    const struct element *faces = find_element(header, "face");
-    struct strips strips = {.vertex_count = vertices ? vertices->count : 0};
-    struct cursor from = {*data + header->end, *data + *size_bytes, header->format};
-    enum outcome outcome = faces && faces->count ? DAMAGED : READ;
-    for (; outcome == READ && at < element; at++)
-        outcome = read_element(&from, header, at, NULL);
-    const uint8_t *begin = from.at;
-    if (outcome == READ)
-        outcome = read_element(&from, header, element, &strips);
-    if (outcome == READ && !write_faces(data, size_bytes, header, element, &strips,
-                                        (size_t)(begin - *data), (size_t)(from.at - *data)))
-        outcome = NO_MEMORY;
-    free(strips.corners);
-    if (outcome == DAMAGED)
-        log_error(log, "%s: its triangle strips %s", path,
-                  faces && faces->count
-                      ? "stand beside faces"
-                      : "are cut short, are no whole numbers, or name vertices that are not there");
-    return outcome == READ ? WHIT_OK : outcome == DAMAGED ? WHIT_ERROR_INPUT : WHIT_ERROR_MEMORY;
 }
 
 /* --- faces that are cut short --------------------------------------------------------------- */
@@ -409,27 +339,51 @@ static bool skip_instance(struct cursor *from, const struct header *header,
     return true;
 }
 
+/* Moves `from` behind an element's data, which it checks, or reads if they are strips. */
+static whit_result check_element(const whit_log *log, const char *path, const uint8_t *end,
+                                 const struct header *header, struct element *element,
+                                 struct cursor *from, struct strips *strips)
+{
+    bool lines = header->format == FORMAT_ASCII, good = true, empty;
+    unsigned long long done = 0;
+    if (element == strips->element) {
+        struct cursor all = {lines ? from->end : from->at, end, header->format};
+        const struct element *faces = find_element(header, "face");
+        bool beside = faces && faces->count;
+        whit_result result = beside ? WHIT_ERROR_INPUT : read_strips(&all, header, strips);
+        from->at = all.at;
+        from->end = lines ? all.at : end;
+        if (result == WHIT_ERROR_INPUT)
+            log_error(log, "%s: its triangle strips %s", path,
+                      beside ? "stand beside faces"
+                             : "are cut short, are no whole numbers, or name vertices that are not "
+                               "there");
+        return result;
+    }
+    for (; element->property_count && done < element->count && good; done++) {
+        if (lines)
+            next_line(from, end);
+        good = skip_instance(from, header, element, &empty);
+        element->empty_count += empty;
+    }
+    if (!good)
+        log_error(log, "%s: %s %llu of %llu is cut short, missing or not of numbers", path,
+                  text_token(element->name).text, done, element->count);
+    return good ? WHIT_OK : WHIT_ERROR_INPUT;
+}
+
 static whit_result check_elements(const whit_log *log, const char *path, const uint8_t *data,
-                                  size_t size_bytes, const struct header *header)
+                                  size_t size_bytes, const struct header *header,
+                                  struct strips *strips)
 {
     const uint8_t *end = data + size_bytes;
     bool lines = header->format == FORMAT_ASCII;
     struct cursor from = {data + header->end, lines ? data + header->end : end, header->format};
     for (uint32_t i = 0; i < header->element_count; i++) {
         struct element *element = &header->elements[i];
-        bool good = true, empty;
-        unsigned long long done = 0;
-        for (; element->property_count && done < element->count && good; done++) {
-            if (lines)
-                next_line(&from, end);
-            good = skip_instance(&from, header, element, &empty);
-            element->empty_count += empty;
-        }
-        if (!good) {
-            log_error(log, "%s: %s %llu of %llu is cut short, missing or not of numbers", path,
-                      text_token(element->name).text, done, element->count);
-            return WHIT_ERROR_INPUT;
-        }
+        whit_result result = check_element(log, path, end, header, element, &from, strips);
+        if (result != WHIT_OK)
+            return result;
         while (lines && from.end < end && *from.end <= ' ')
             from.end++;
         element->data_end = (size_t)((lines ? from.end : from.at) - data);
@@ -439,7 +393,7 @@ static whit_result check_elements(const whit_log *log, const char *path, const u
 
 /* --- what assimp reads ---------------------------------------------------------------------- */
 
-/* The file that assimp gets, no longer than the one that there is. */
+/* The file that assimp gets. */
 struct output {
     uint8_t *bytes;
     size_t used;
@@ -494,11 +448,12 @@ static void put_data(struct output *to, const uint8_t *data, size_t begin,
 {
     const uint8_t *end = data + element->data_end;
     bool lines = header->format == FORMAT_ASCII, empty = false;
-    bool whole = !element->property_count || (!lines && !element->empty_count);
     struct cursor from = {data + begin, lines ? data + begin : end, header->format};
-    if (whole)
+    if (!lines && !element->empty_count) {
         put(to, data + begin, element->data_end - begin);
-    for (unsigned long long i = 0; !whole && i < element->count; i++) {
+        return;
+    }
+    for (unsigned long long i = 0; element->property_count && i < element->count; i++) {
         if (lines)
             next_line(&from, end);
         const uint8_t *start = from.at;
@@ -511,11 +466,36 @@ static void put_data(struct output *to, const uint8_t *data, size_t begin,
     }
 }
 
+enum { STRIPS_LINES_BYTES = 80, TRIANGLE_BYTES_MAX = 36 }; /* of put_triangles and its header */
+
+static void put_triangles(struct output *to, enum format format, const struct strips *strips)
+{
+    for (uint32_t i = 0; i < strips->count; i += 3) {
+        const uint32_t *corners = strips->corners + i;
+        uint8_t *at = to->bytes + to->used;
+        if (format == FORMAT_ASCII) {
+            to->used +=
+                (size_t)sprintf((char *)at, "3 %u %u %u\n", corners[0], corners[1], corners[2]);
+            continue;
+        }
+        at[0] = 3;
+        for (int k = 0; k < 12; k++)
+            at[1 + k] = (uint8_t)(corners[k / 4] >> 8 * (format == FORMAT_BIG ? 3 - k % 4 : k % 4));
+        to->used += 13;
+    }
+}
+
 static bool put_element(struct output *to, const uint8_t *data, const struct element *element,
-                        struct ply_paint *paint)
+                        const struct strips *strips, struct ply_paint *paint)
 {
     char words[WORDS_MAX][WORD_BYTES];
     size_t begin = element->begin;
+    if (element == strips->element) {
+        to->used += (size_t)sprintf((char *)to->bytes + to->used,
+                                    "element face %u\nproperty list uchar int vertex_indices\n",
+                                    strips->count / 3);
+        return true;
+    }
     if (element->empty_count) {
         begin += strcspn((const char *)data + begin, "\r\n");
         to->used += (size_t)sprintf((char *)to->bytes + to->used, "element %s %llu", element->name,
@@ -527,24 +507,35 @@ static bool put_element(struct output *to, const uint8_t *data, const struct ele
     return put_lines(to, data, begin, element->end, paint);
 }
 
+static bool is_read(const struct element *element, const struct strips *strips, bool face)
+{
+    if (face && strips->element)
+        return element == strips->element;
+    return strcmp(element->name, face ? "face" : "vertex") == 0;
+}
+
 /* Copies what assimp reads, vertices first. False: memory ran out. */
 static bool keep_read(struct output *to, const uint8_t *data, const struct header *header,
-                      struct ply_paint *paint)
+                      const struct strips *strips, struct ply_paint *paint)
 {
-    static const char *const names[] = {"vertex", "face"};
     const struct element *elements = header->elements;
     uint32_t count = header->element_count;
     bool good = put_lines(to, data, 0, count ? elements[0].begin : 0, paint);
     for (uint32_t i = 0; good && i < 2 * count; i++)
-        if (strcmp(elements[i % count].name, names[i / count]) == 0)
-            good = put_element(to, data, &elements[i % count], paint);
+        if (is_read(&elements[i % count], strips, i >= count))
+            good = put_element(to, data, &elements[i % count], strips, paint);
     if (good)
         good = put_lines(to, data, count ? elements[count - 1].end : 0, header->end, paint);
     size_t head = to->used;
-    for (uint32_t i = 0; good && i < 2 * count; i++)
-        if (strcmp(elements[i % count].name, names[i / count]) == 0)
-            put_data(to, data, i % count ? elements[i % count - 1].data_end : header->end, header,
-                     &elements[i % count]);
+    for (uint32_t i = 0; good && i < 2 * count; i++) {
+        const struct element *element = &elements[i % count];
+        if (!is_read(element, strips, i >= count))
+            continue;
+        if (element == strips->element)
+            put_triangles(to, header->format, strips);
+        else
+            put_data(to, data, i % count ? element[-1].data_end : header->end, header, element);
+    }
     /* assimp 5.2 takes a first data byte of 10 for the end of the header's last line: there are two
        then. */
     uint8_t *begin = to->bytes + head;
@@ -597,11 +588,13 @@ static void note_unread(struct scene *scene, const char *path, const struct head
 }
 
 /* Replaces the bytes by those that assimp gets, and notes what is not among them. */
-static whit_result rewrite(struct scene *scene, const char *path, struct header *header,
-                           uint8_t **data, size_t *size_bytes, struct ply_paint *paint)
+static whit_result rewrite(struct scene *scene, const char *path, const struct header *header,
+                           const struct strips *strips, uint8_t **data, size_t *size_bytes,
+                           struct ply_paint *paint)
 {
-    struct output kept = {.bytes = array_alloc(*size_bytes + 2, 1)};
-    if (!kept.bytes || !keep_read(&kept, *data, header, paint)) {
+    size_t more = STRIPS_LINES_BYTES + (size_t)strips->count / 3 * TRIANGLE_BYTES_MAX;
+    struct output kept = {.bytes = array_alloc(*size_bytes + more, 1)};
+    if (!kept.bytes || !keep_read(&kept, *data, header, strips, paint)) {
         free(kept.bytes);
         return WHIT_ERROR_MEMORY;
     }
@@ -622,19 +615,15 @@ whit_result ply_prepare(struct scene *scene, const char *path, uint8_t **data, s
     whit_result result = read_header(*data, *size_bytes, &header) ? WHIT_OK : WHIT_ERROR_MEMORY;
     if (result == WHIT_OK)
         result = check_header(log, path, &header, *size_bytes);
-    const struct element *strips = find_element(&header, "tristrips");
+    const struct element *vertices = find_element(&header, "vertex");
+    struct strips strips = {.element = find_element(&header, "tristrips"),
+                            .vertex_count = vertices ? vertices->count : 0};
     bool has_data = header.end <= *size_bytes;
-    if (result == WHIT_OK && has_data && strips) {
-        result = replace_strips(log, path, &header, strips, data, size_bytes);
-        header_finish(&header);
-        header = (struct header){0};
-        if (result == WHIT_OK && !read_header(*data, *size_bytes, &header))
-            result = WHIT_ERROR_MEMORY;
-    }
     if (result == WHIT_OK && has_data)
-        result = check_elements(log, path, *data, *size_bytes, &header);
+        result = check_elements(log, path, *data, *size_bytes, &header, &strips);
     if (result == WHIT_OK && has_data)
-        result = rewrite(scene, path, &header, data, size_bytes, paint);
+        result = rewrite(scene, path, &header, &strips, data, size_bytes, paint);
+    free(strips.corners);
     header_finish(&header);
     return result;
 }
