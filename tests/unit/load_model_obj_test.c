@@ -303,86 +303,69 @@ TEST_IN(texture_coordinates_that_are_not_there_are_told, fixture_begin, fixture_
 
 /* --- classes -------------------------------------------------------------------------------- */
 
-TEST_IN(class_of_mirrors, fixture_begin, fixture_end)
-{
-    const struct scene_material *m =
-        load_material("newmtl m\nKd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\nTf 1 1 1\n");
-    assert_float_equal(m->reflection[1], 0.8, 1e-6);
-    assert_float_equal(m->transmission[0], 0, 0);
-    assert_false(m->fresnel);
-    assert_int_equal(m->illum, 3);
-}
+/* A field of a material, a float, and its value. */
+#define IS(field, value)                                                                           \
+    {                                                                                              \
+#field, offsetof(struct scene_material, field), value                                      \
+    }
 
-TEST_IN(class_of_glass, fixture_begin, fixture_end)
-{
-    const struct scene_material *m =
-        load_material("newmtl m\nKs 1 1 1\nNi 1.33\nTf 0.25 1 0.5\nillum 7\n");
-    assert_float_equal(m->transmission[0], 0.25, 0);
-    assert_float_equal(m->transmission[1], 1, 0);
-    assert_float_equal(m->ior, 1.33, 1e-6);
-    assert_true(m->fresnel);
-    assert_false(m->thin_walled);
-    assert_int_equal(m->alpha, SCENE_ALPHA_OPAQUE);
-}
+/* What the classes of `illum` make of an MTL. */
+static const struct {
+    const char *mtl;
+    struct {
+        const char *field;
+        size_t at;
+        double value;
+    } floats[4];
+    bool fresnel, shadow_catcher;
+    enum scene_alpha alpha;
+    const char *note;
+} classes[] = {
+    {"Ks 1 1 1\nillum 1\n", .floats = {IS(specular[0], 0)}},
+    {"Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\nTf 1 1 1\n",
+     .floats = {IS(reflection[1], 0.8), IS(transmission[0], 0)}},
+    {"Ks 1 1 1\nNi 1.33\nTf 0.25 1 0.5\nillum 7\n",
+     .floats = {IS(transmission[0], 0.25), IS(transmission[1], 1), IS(ior, 1.33)}, .fresnel = true},
+    /* Glass refracts what it does not reflect, and `d` decides over Tf. */
+    {"Ks 0.25 0.5 0\nTf 1 0.5 0.5\nillum 6\n",
+     .floats = {IS(transmission[0], 0.75), IS(transmission[1], 0.25), IS(transmission[2], 0.5),
+                IS(reflection[1], 0.5)}},
+    {"d 0.1\nTf 0.9 0.9 0.9\nNi 1.5\nillum 6\n", .floats = {IS(transmission[0], 0.9)}},
+    {"Tf 0.1 0.1 0.1\nNi 2.5\nillum 7\n", .floats = {IS(transmission[0], 0.9)}, .fresnel = true,
+     .note = "held back"},
+    {"Tr 1.0\nillum 7\n", .floats = {IS(transmission[0], 1)}, .fresnel = true},
+    {"Tr 0.25\nillum 2\n", .floats = {IS(opacity, 0.75)}, .alpha = SCENE_ALPHA_BLEND},
+    {"Tr 1.0\nillum 2\n", .floats = {IS(opacity, 1)}, .note = "Tr 1 is drawn as opaque"},
+    {"illum 10\n", .shadow_catcher = true},
+    {"Ka 0.2 0 0\nKd 0 0 0\nKs 1 1 1\nNs 1\n", /* zeros that are meant */
+     .floats = {IS(ambient[0], 0.2), IS(ambient[1], 0), IS(diffuse[0], 0), IS(specular[0], 1)}},
+};
 
-TEST_IN(glass_refracts_what_it_does_not_reflect, fixture_begin, fixture_end)
+TEST_IN(classes_of_materials, fixture_begin, fixture_end)
 {
-    const struct scene_material *m =
-        load_material("newmtl m\nKs 0.25 0.5 0\nTf 1 0.5 0.5\nillum 6\n");
-    assert_float_equal(m->transmission[0], 0.75, 0);
-    assert_float_equal(m->transmission[1], 0.25, 0);
-    assert_float_equal(m->transmission[2], 0.5, 0);
-    assert_float_equal(m->reflection[1], 0.5, 0);
-}
-
-TEST_IN(dissolve_decides_what_glass_passes, fixture_begin, fixture_end)
-{
-    const struct scene_material *m =
-        load_material("newmtl m\nd 0.1\nTf 0.9 0.9 0.9\nNi 1.5\nillum 6\n");
-    assert_float_equal(m->transmission[0], 0.9, 1e-6);
-    assert_false(m->fresnel);
-}
-
-TEST_IN(dark_filters_are_read_as_held_back, fixture_begin, fixture_end)
-{
-    const struct scene_material *m = load_material("newmtl m\nTf 0.1 0.1 0.1\nNi 2.5\nillum 7\n");
-    assert_float_equal(m->transmission[0], 0.9, 1e-6);
-    assert_true(fixture_noted("held back"));
-}
-
-TEST_IN(transparency_the_other_way_round, fixture_begin, fixture_end)
-{
-    const struct scene_material *m = load_material("newmtl m\nTr 0.25\nillum 2\n");
-    assert_float_equal(m->opacity, 0.75, 0);
-    assert_int_equal(m->alpha, SCENE_ALPHA_BLEND);
-}
-
-TEST_IN(transparency_of_one_is_meant_as_opaque, fixture_begin, fixture_end)
-{
-    const struct scene_material *m = load_material("newmtl m\nTr 1.0\nillum 2\n");
-    assert_float_equal(m->opacity, 1, 0);
-    assert_int_equal(m->alpha, SCENE_ALPHA_OPAQUE);
-    assert_true(fixture_noted("Tr 1 is drawn as opaque"));
-}
-
-TEST_IN(transparency_of_one_is_clear_glass, fixture_begin, fixture_end)
-{
-    const struct scene_material *m = load_material("newmtl m\nTr 1.0\nillum 7\n");
-    assert_float_equal(m->transmission[0], 1, 0);
-}
-
-TEST_IN(class_10_catches_shadows, fixture_begin, fixture_end)
-{
-    const struct scene_material *m = load_material("newmtl m\nillum 10\n");
-    assert_true(m->shadow_catcher);
-    assert_false(fixture_noted("shadow"));
-}
-
-TEST_IN(class_of_plain_colors, fixture_begin, fixture_end)
-{
-    const struct scene_material *m = load_material("newmtl m\nKs 1 1 1\nillum 1\n");
-    assert_float_equal(m->specular[0], 0, 0);
-    assert_int_equal(m->model, WHIT_MODEL_PHONG);
+    for (size_t i = 0; i < sizeof classes / sizeof *classes; i++) {
+        own_memory char *mtl = string_format("newmtl m%zu\n%s", i, classes[i].mtl);
+        own_memory char *obj = string_format("mtllib a.mtl\n" QUAD "usemtl m%zu\nf 1 2 3 4\n", i);
+        uint32_t notes = fixture.scene->note_count;
+        put_text("a.mtl", mtl);
+        fixture_mesh(put_text("a.obj", obj));
+        const struct scene_material *m = &fixture.scene->materials[i];
+        for (int k = 0; k < 4 && classes[i].floats[k].field; k++) {
+            float value;
+            memcpy(&value, (const char *)m + classes[i].floats[k].at, sizeof value);
+            if (fabs((double)value - classes[i].floats[k].value) > 1e-6)
+                fail_msg("%s%s is %g", mtl, classes[i].floats[k].field, (double)value);
+        }
+        const char *illum = strstr(mtl, "illum ");
+        assert_int_equal(m->illum, illum ? atoi(illum + 6) : 2);
+        assert_int_equal(m->model, WHIT_MODEL_PHONG);
+        assert_int_equal(m->fresnel, classes[i].fresnel);
+        assert_int_equal(m->thin_walled, false);
+        assert_int_equal(m->shadow_catcher, classes[i].shadow_catcher);
+        assert_int_equal(m->alpha, classes[i].alpha);
+        assert_int_equal(fixture.scene->note_count - notes, classes[i].note != NULL);
+        assert_true(!classes[i].note || fixture_noted(classes[i].note));
+    }
 }
 
 /* --- maps ----------------------------------------------------------------------------------- */
@@ -467,16 +450,6 @@ TEST_IN(zeros_that_nobody_means, fixture_begin, fixture_end)
     }
     assert_true(fixture_noted("map_Kd is drawn as with a Kd of 1"));
     assert_true(fixture_noted("Ns 0 makes no highlight"));
-}
-
-TEST_IN(zeros_that_are_meant, fixture_begin, fixture_end)
-{
-    const struct scene_material *m =
-        load_material("newmtl m\nKa 0.2 0 0\nKd 0 0 0\nKs 1 1 1\nNs 1\n");
-    assert_float_equal(m->ambient[0], 0.2f, 0);
-    assert_float_equal(m->ambient[1], 0, 0);
-    assert_float_equal(m->diffuse[0], 0, 0);
-    assert_float_equal(m->specular[0], 1, 0);
 }
 
 TEST_IN(unused_maps_are_named, fixture_begin, fixture_end)
