@@ -3,24 +3,27 @@
 #include "load_model_fixture.h"
 #include "scene/pose.h"
 
+/* In texts ' stands for ". */
 static whit_result load_text(const char *text, struct scene **out)
 {
     const whit_log log = messages_log(&messages);
-    const char *path = put_text("test.json", text);
+    const char *path = put_json("test.json", "%s", text);
     whit_result result = load_scene(&log, path, NULL, out);
     unlink(path);
     return result;
 }
 
-/* Checks that there is one error, which begins, after the folder's name, with `expected`. */
+/* Checks that there is one error, which begins, after the file's name, with `expected`: its line
+   and column. */
 static void assert_error(const char *text, const char *expected)
 {
     struct scene *scene = NULL;
     assert_int_equal(load_text(text, &scene), WHIT_ERROR_INPUT);
     assert_null(scene);
     assert_int_equal(messages.errors, 1);
-    const char *message = messages.last_error + strlen(folder) + 1;
-    if (strncmp(message, expected, strlen(expected)) != 0)
+    const char *message = messages.last_error + strlen(folder);
+    own_memory char *begin = string_format("/test.json:%s", expected);
+    if (strncmp(message, begin, strlen(begin)) != 0)
         fail_msg("expected `%s`, got `%s`", expected, message);
 }
 
@@ -35,136 +38,125 @@ static struct scene *load_fine(const char *text)
 
 TEST_IN(errors_name_line_and_column, folder_begin, folder_end)
 {
-    assert_error("{\n  \"objects\": [,]\n}", "test.json:2:15: ");
-    assert_error("{\"ambient\": 0.5\n \"objects\": [1 2]}",
-                 "test.json:2:10: '}' expected near '\"objects\"'; is a comma missing before it?");
-    assert_error("{\"objects\": [\n1 2]}",
-                 "test.json:2:3: ']' expected near '2'; is a comma missing before it?");
-    assert_error(
-        "{\"objects\": [],\n}",
-        "test.json:2:1: string or '}' expected near '}'; is the comma before it one too many?");
-    assert_error("{\"objects\": [\n{},\n]}",
-                 "test.json:3:1: unexpected token near ']'; is the comma before it one too many?");
-    assert_error("{ // white\n\"ambient\": 1}",
-                 "test.json:1:3: string or '}' expected near '/'; JSON has no comments, but");
-    assert_error("{\"ambient\": 1 // white\n}",
-                 "test.json:1:15: '}' expected near '/'; JSON has no comments, but");
-    assert_error("{\"materials\": {\"a\": {\"mirror\": 1}}}",
-                 "test.json:1:22: materials.a.mirror: unknown key; did you mean `reflection`?");
-    assert_error("{\"camera\": {\"position\": [0, 1, 5]}}",
-                 "test.json:1:13: camera.position: unknown key; did you mean `eye`?");
-    assert_error("{\"camera\": {\"lookat\": [0, 1, 0]}}",
-                 "test.json:1:13: camera.lookat: unknown key; did you mean `target`?");
-    assert_error("{\"objects\": [{\"type\": \"box\"}]}",
-                 "test.json:1:15: objects[0].type: unknown key; did you mean `shape`?");
-    assert_error("{\"lights\": [{\"type\": \"spot\"}]}",
-                 "test.json:1:14: lights[0].type: unknown key; did you mean `kind`?");
-    assert_error("{\"lights\": [{\"kind\": \"spot\", \"angle\": 30}]}",
-                 "test.json:1:30: lights[0].angle: unknown key; did you mean `outer`?");
-    assert_error("{\n  \"object\": []\n}",
-                 "test.json:2:3: object: unknown key; did you mean `objects`?");
-    assert_error("{ \"objects\": [\n {\"shape\":\"box\"},\n {\"shape\": \"bxo\"}\n] }",
-                 "test.json:3:3: objects[1].shape: `bxo` is not one of: box, plane, sphere");
-    assert_error("{\"objects\":[{\"shape\":\"sphere\",\"tube\":1}]}",
-                 "test.json:1:31: objects[0].tube: a sphere has no `tube`");
-    assert_error("{\"objects\":[{\"shape\":\"sphere\",\n\"radius\":\"big\"}]}",
-                 "test.json:2:1: objects[0].radius: a number is expected");
-    assert_error("{\"objects\":[{\"shape\":\"box\",\n\"translation\":[0,\n0,\n\"x\"]}]}",
-                 "test.json:4:1: objects[0].translation[2]: a number is expected");
-    assert_error("{\"objects\":[{\"shape\":\"box\", \"translation\":[0,0]}]}",
-                 "test.json:1:29: objects[0].translation: 3 numbers in [ ] are expected");
-    assert_error("[]", "test.json:1:1: an object { } is expected");
-    assert_error("{\"a\": 1, \"a\": 2}", "test.json:1:");
-    assert_error("", "test.json:1:1: ");
+    assert_error("{\n  'objects': [,]\n}", "2:15: ");
+    assert_error("{'ambient': 0.5\n 'objects': [1 2]}",
+                 "2:10: '}' expected near '\"objects\"'; is a comma missing before it?");
+    assert_error("{'objects': [\n1 2]}",
+                 "2:3: ']' expected near '2'; is a comma missing before it?");
+    assert_error("{'objects': [],\n}",
+                 "2:1: string or '}' expected near '}'; is the comma before it one too many?");
+    assert_error("{'objects': [\n{},\n]}",
+                 "3:1: unexpected token near ']'; is the comma before it one too many?");
+    assert_error("{ // white\n'ambient': 1}",
+                 "1:3: string or '}' expected near '/'; JSON has no comments, but");
+    assert_error("{'ambient': 1 // white\n}",
+                 "1:15: '}' expected near '/'; JSON has no comments, but");
+    assert_error("{'materials': {'a': {'mirror': 1}}}",
+                 "1:22: materials.a.mirror: unknown key; did you mean `reflection`?");
+    assert_error("{'camera': {'position': [0, 1, 5]}}",
+                 "1:13: camera.position: unknown key; did you mean `eye`?");
+    assert_error("{'camera': {'lookat': [0, 1, 0]}}",
+                 "1:13: camera.lookat: unknown key; did you mean `target`?");
+    assert_error("{'objects': [{'type': 'box'}]}",
+                 "1:15: objects[0].type: unknown key; did you mean `shape`?");
+    assert_error("{'lights': [{'type': 'spot'}]}",
+                 "1:14: lights[0].type: unknown key; did you mean `kind`?");
+    assert_error("{'lights': [{'kind': 'spot', 'angle': 30}]}",
+                 "1:30: lights[0].angle: unknown key; did you mean `outer`?");
+    assert_error("{\n  'object': []\n}", "2:3: object: unknown key; did you mean `objects`?");
+    assert_error("{ 'objects': [\n {'shape':'box'},\n {'shape': 'bxo'}\n] }",
+                 "3:3: objects[1].shape: `bxo` is not one of: box, plane, sphere");
+    assert_error("{'objects':[{'shape':'sphere','tube':1}]}",
+                 "1:31: objects[0].tube: a sphere has no `tube`");
+    assert_error("{'objects':[{'shape':'sphere',\n'radius':'big'}]}",
+                 "2:1: objects[0].radius: a number is expected");
+    assert_error("{'objects':[{'shape':'box',\n'translation':[0,\n0,\n'x']}]}",
+                 "4:1: objects[0].translation[2]: a number is expected");
+    assert_error("{'objects':[{'shape':'box', 'translation':[0,0]}]}",
+                 "1:29: objects[0].translation: 3 numbers in [ ] are expected");
+    assert_error("[]", "1:1: an object { } is expected");
+    assert_error("{'a': 1, 'a': 2}", "1:");
+    assert_error("", "1:1: ");
 }
 
 /* Strings with braces, escapes and wide letters must not confuse the search for a place. */
 TEST_IN(places_survive_odd_strings, folder_begin, folder_end)
 {
-    assert_error("{ \"description\": \"} ] \\\" { \\\\\",\n"
-                 "  \"materials\": {\"\xc3\xa4\": {\"diffuse\": 1}, \"b\": {\"diffuse\": -1}}}",
-                 "test.json:2:44: materials.b.diffuse: -1 is out of range");
-    assert_error("{\"objects\":[{\"name\":\"[1,{\",\"shape\":\"box\",\"children\":[1]}]}",
-                 "test.json:1:54: objects[0].children[0]: an object { } is expected");
+    assert_error("{ 'description': '} ] \\' { \\\\',\n  'materials': {'\xc3\xa4': {'diffuse': 1}, "
+                 "'b': {'diffuse': -1}}}",
+                 "2:44: materials.b.diffuse: -1 is out of range");
+    assert_error("{'objects':[{'name':'[1,{','shape':'box','children':[1]}]}",
+                 "1:54: objects[0].children[0]: an object { } is expected");
 }
 
 TEST_IN(senseless_content_is_refused, folder_begin, folder_end)
 {
-    assert_error(
-        "{\"materials\":{\"glass\":{}},\"objects\":[{\"shape\":\"box\",\"material\":\"glas\"}]}",
-        "test.json:1:53: objects[0].material: there is no material `glas`; did you mean "
-        "`glass`?");
-    assert_error("{\"objects\":[{\"name\":\"x\"}]}",
-                 "test.json:1:13: objects[0]: an object needs a `shape`, a `model` or `children`");
-    assert_error("{\"objects\":[{\"shape\":\"box\",\"scale\":0}]}",
-                 "test.json:1:28: objects[0].scale: a scale of 0");
-    assert_error("{\"objects\":[{\"shape\":\"box\",\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0],"
-                 "\"scale\":2}]}",
-                 "test.json:1:28: objects[0].matrix: `matrix` and `scale` exclude each other");
-    assert_error("{\"objects\":[{\"model\":\"nowhere.obj\"}]}",
-                 "test.json:1:14: objects[0].model: `nowhere.obj`: there is no such file");
-    assert_error("{\"objects\":[{\"model\":\"other.json\"}]}",
-                 "test.json:1:14: objects[0].model: `other.json` is no model");
-    assert_error("{\"lights\":[{\"kind\":\"spot\",\"position\":[0,1,0]}]}",
-                 "test.json:1:12: lights[0]: this light needs a `direction` or a `target`");
-    assert_error("{\"camera\":{\"eye\":[1,2,3],\"target\":[1,2,3]}}",
-                 "test.json:1:2: camera: `eye` and `target` are the same point");
-    assert_error("{\"environment\":{\"map\":\"no.hdr\"}}",
-                 "test.json:1:17: environment.map: `no.hdr`: there is no such file");
-    assert_error("{\"environment\":\"#12345\"}",
-                 "test.json:1:2: environment: `#12345` is no colour");
-    assert_error("{\"materials\":{\"m\":{\"diffuse\":1,\"metallic\":1}}}",
-                 "test.json:1:20: materials.m.diffuse: `diffuse` does not go with `metallic`; "
-                 "use `base_color`");
-    assert_error(
-        "{\"materials\":{\"m\":{\"color\":1}}}",
-        "test.json:1:20: materials.m.color: `color` goes with `unlit` only; use `diffuse`");
-    assert_error("{\"materials\":{\"m\":{\"unlit\":true,\"shininess\":1}}}",
-                 "test.json:1:33: materials.m.shininess: `shininess` does not go with `unlit`");
-    assert_error("{\"objects\":[{\"shape\":\"box\",\"model\":\"x.obj\"}]}",
-                 "test.json:1:28: objects[0].model: `shape` and `model` exclude each other");
-    assert_error("{\"objects\":[{\"children\":[],\"radius\":1}]}",
-                 "test.json:1:28: objects[0].radius: a group has no `radius`");
-    assert_error("{\"lights\":[{\"position\":[0,1,0],\"direction\":[0,1,0]}]}",
-                 "test.json:1:32: lights[0].direction: a point light has no `direction`");
-    assert_error("{\"lights\":[{\"kind\":\"rectangle\",\"u\":[1,0,0],\"v\":[0,0,1]}]}",
-                 "test.json:1:12: lights[0]: a rectangle light needs a `position`");
-    assert_error("{\"lights\":[{\"kind\":\"rectangle\",\"position\":[0,1,0],\"u\":[1,0,0],"
-                 "\"v\":[2,0,0]}]}",
-                 "test.json:1:12: lights[0]: the light has no area");
-    assert_error("{\"lights\":[{\"kind\":\"triangle\",\"points\":[[0,0,0],[1,0,0]]}]}",
-                 "test.json:1:12: lights[0]: a triangle light needs three `points`");
-    assert_error("{\"camera\":{},\n\"cameras\":[]}",
-                 "test.json:2:1: cameras: `camera` and `cameras` exclude each other");
-    assert_error(
-        "{\"objects\":[{\"shape\":\"box\",\"animation\":{\"scale\":{\"times\":[1,1],\"values\":"
-        "[[1,1,1],[1,1,1]]}}}]}",
-        "test.json:1:61: objects[0].animation.scale.times[1]: times must increase");
-    assert_error("{\"objects\":[{\"shape\":\"box\",\"repeat\":{\"count\":[100000,100000,1]}}]}",
-                 "test.json:1:38: objects[0].repeat.count: more than 4000000 copies");
+    assert_error("{'materials':{'glass':{}},'objects':[{'shape':'box','material':'glas'}]}",
+                 "1:53: objects[0].material: there is no material `glas`; did you mean `glass`?");
+    assert_error("{'objects':[{'name':'x'}]}",
+                 "1:13: objects[0]: an object needs a `shape`, a `model` or `children`");
+    assert_error("{'objects':[{'shape':'box','scale':0}]}", "1:28: objects[0].scale: a scale of 0");
+    assert_error("{'objects':[{'shape':'box','matrix':[1,0,0,0,0,1,0,0,0,0,1,0],'scale':2}]}",
+                 "1:28: objects[0].matrix: `matrix` and `scale` exclude each other");
+    assert_error("{'objects':[{'model':'nowhere.obj'}]}",
+                 "1:14: objects[0].model: `nowhere.obj`: there is no such file");
+    assert_error("{'objects':[{'model':'other.json'}]}",
+                 "1:14: objects[0].model: `other.json` is no model");
+    assert_error("{'lights':[{'kind':'spot','position':[0,1,0]}]}",
+                 "1:12: lights[0]: this light needs a `direction` or a `target`");
+    assert_error("{'camera':{'eye':[1,2,3],'target':[1,2,3]}}",
+                 "1:2: camera: `eye` and `target` are the same point");
+    assert_error("{'environment':{'map':'no.hdr'}}",
+                 "1:17: environment.map: `no.hdr`: there is no such file");
+    assert_error("{'environment':'#12345'}", "1:2: environment: `#12345` is no colour");
+    assert_error("{'materials':{'m':{'diffuse':1,'metallic':1}}}",
+                 "1:20: materials.m.diffuse: `diffuse` does not go with `metallic`; use "
+                 "`base_color`");
+    assert_error("{'materials':{'m':{'color':1}}}",
+                 "1:20: materials.m.color: `color` goes with `unlit` only; use `diffuse`");
+    assert_error("{'materials':{'m':{'unlit':true,'shininess':1}}}",
+                 "1:33: materials.m.shininess: `shininess` does not go with `unlit`");
+    assert_error("{'objects':[{'shape':'box','model':'x.obj'}]}",
+                 "1:28: objects[0].model: `shape` and `model` exclude each other");
+    assert_error("{'objects':[{'children':[],'radius':1}]}",
+                 "1:28: objects[0].radius: a group has no `radius`");
+    assert_error("{'lights':[{'position':[0,1,0],'direction':[0,1,0]}]}",
+                 "1:32: lights[0].direction: a point light has no `direction`");
+    assert_error("{'lights':[{'kind':'rectangle','u':[1,0,0],'v':[0,0,1]}]}",
+                 "1:12: lights[0]: a rectangle light needs a `position`");
+    assert_error("{'lights':[{'kind':'rectangle','position':[0,1,0],'u':[1,0,0],'v':[2,0,0]}]}",
+                 "1:12: lights[0]: the light has no area");
+    assert_error("{'lights':[{'kind':'triangle','points':[[0,0,0],[1,0,0]]}]}",
+                 "1:12: lights[0]: a triangle light needs three `points`");
+    assert_error("{'camera':{},\n'cameras':[]}",
+                 "2:1: cameras: `camera` and `cameras` exclude each other");
+    assert_error("{'objects':[{'shape':'box','animation':{'scale':{'times':[1,1],'values':[[1,1,1],"
+                 "[1,1,1]]}}}]}",
+                 "1:61: objects[0].animation.scale.times[1]: times must increase");
+    assert_error("{'objects':[{'shape':'box','repeat':{'count':[100000,100000,1]}}]}",
+                 "1:38: objects[0].repeat.count: more than 4000000 copies");
 }
 
 TEST_IN(camera_kinds_do_not_mix, folder_begin, folder_end)
 {
-    assert_error("{\"camera\":{\"panorama\":true,\n\"fov\":40}}",
-                 "test.json:2:1: camera.fov: a panorama has no `fov`");
-    assert_error("{\"camera\":{\"panorama\":true,\n\"focus\":4}}",
-                 "test.json:2:1: camera.focus: a panorama has no `focus`");
-    assert_error("{\"camera\":{\"height\":2,\n\"lens\":1}}",
-                 "test.json:2:1: camera.lens: a parallel view (`height`) has no lens");
-    assert_error("{\"camera\":{\n\"focus\":1}}",
-                 "test.json:2:1: camera.focus: `focus` is of a camera with a `lens`");
-    assert_error("{\"camera\":{\n\"lens\":-1}}", "test.json:2:1: camera.lens: ");
-    assert_error("{\"camera\":{\"lens\":1,\n\"focus\":0}}", "test.json:2:1: camera.focus: ");
-    assert_error("{\"camera\":{\n\"panorama\":1}}", "test.json:2:1: camera.panorama: ");
-    assert_error("{\"camera\":{\n\"fov\":180}}", "test.json:2:1: camera.fov: ");
+    assert_error("{'camera':{'panorama':true,\n'fov':40}}",
+                 "2:1: camera.fov: a panorama has no `fov`");
+    assert_error("{'camera':{'panorama':true,\n'focus':4}}",
+                 "2:1: camera.focus: a panorama has no `focus`");
+    assert_error("{'camera':{'height':2,\n'lens':1}}",
+                 "2:1: camera.lens: a parallel view (`height`) has no lens");
+    assert_error("{'camera':{\n'focus':1}}",
+                 "2:1: camera.focus: `focus` is of a camera with a `lens`");
+    assert_error("{'camera':{\n'lens':-1}}", "2:1: camera.lens: ");
+    assert_error("{'camera':{'lens':1,\n'focus':0}}", "2:1: camera.focus: ");
+    assert_error("{'camera':{\n'panorama':1}}", "2:1: camera.panorama: ");
+    assert_error("{'camera':{\n'fov':180}}", "2:1: camera.fov: ");
 }
 
 TEST_IN(camera_kinds_are_read, folder_begin, folder_end)
 {
-    own_scene *scene =
-        load_fine("{\"cameras\":[{\"lens\":0.25,\"focus\":7,\"fov\":179.9},{\"lens\":0.5},"
-                  "{\"panorama\":true},{\"panorama\":false,\"fov\":0.001}]}");
+    own_scene *scene = load_fine("{'cameras':[{'lens':0.25,'focus':7,'fov':179.9},{'lens':0.5},{'"
+                                 "panorama':true},{'panorama':false,'fov':0.001}]}");
     const struct scene_camera *c = scene->cameras;
     assert_int_equal(c[0].kind, WHIT_CAMERA_PERSPECTIVE);
     assert_true(c[0].lens_radius == 0.25f && c[0].focus_distance == 7.0f);
@@ -177,30 +169,28 @@ TEST_IN(camera_kinds_are_read, folder_begin, folder_end)
 
 TEST_IN(nested_repeats_have_a_limit, folder_begin, folder_end)
 {
-    assert_error(
-        "{\"objects\":[{\"repeat\":{\"count\":[2000,1,1]},\"children\":[{\"shape\":\"box\","
-        "\"repeat\":{\"count\":[2001,1,1]}}]}]}",
-        "test.json:1:13: objects[0]: more than 4000000 instances");
+    assert_error("{'objects':[{'repeat':{'count':[2000,1,1]},'children':[{'shape':'box','repeat':{'"
+                 "count':[2001,1,1]}}]}]}",
+                 "1:13: objects[0]: more than 4000000 instances");
 }
 
 TEST_IN(deep_children_are_refused, folder_begin, folder_end)
 {
     enum { DEEP = 100 };
-    char text[DEEP * 32] = "{\"objects\":[";
+    char text[DEEP * 32] = "{'objects':[";
     for (int i = 0; i < DEEP; ++i)
-        strcat(text, "{\"children\":[");
+        strcat(text, "{'children':[");
     for (int i = 0; i < DEEP; ++i)
         strcat(text, "]}");
     strcat(text, "]}");
-    assert_error(text, "test.json:1:");
+    assert_error(text, "1:");
 }
 
 TEST_IN(shapes_are_placed, folder_begin, folder_end)
 {
     own_scene *scene = load_fine(
-        "{\"objects\":[{\"shape\":\"box\",\"size\":[1,2,3],\"translation\":[5,0,0],"
-        "\"rotation\":[0,90,0],\"scale\":2,\"children\":[{\"shape\":\"sphere\",\"segments\":8,"
-        "\"rings\":4,\"translation\":[0,0,1]}]}]}");
+        "{'objects':[{'shape':'box','size':[1,2,3],'translation':[5,0,0],'rotation':[0,90,0],'"
+        "scale':2,'children':[{'shape':'sphere','segments':8,'rings':4,'translation':[0,0,1]}]}]}");
     own_pose pose;
     assert_int_equal(scene->mesh_count, 2);
     assert_int_equal(scene->meshes[0].triangle_count, 12);
@@ -213,9 +203,8 @@ TEST_IN(shapes_are_placed, folder_begin, folder_end)
 
 TEST_IN(equal_shapes_share_a_mesh, folder_begin, folder_end)
 {
-    own_scene *scene =
-        load_fine("{\"objects\":[{\"shape\":\"box\"},{\"shape\":\"box\",\"translation\":[3,0,0]},"
-                  "{\"shape\":\"box\",\"size\":2}]}");
+    own_scene *scene = load_fine("{'objects':[{'shape':'box'},{'shape':'box','translation':[3,0,0]}"
+                                 ",{'shape':'box','size':2}]}");
     assert_int_equal(scene->mesh_count, 2);
     assert_int_equal(scene->instance_count, 3);
     assert_int_equal(scene->instances[0].mesh, scene->instances[1].mesh);
@@ -225,8 +214,8 @@ TEST_IN(equal_shapes_share_a_mesh, folder_begin, folder_end)
 TEST_IN(repeat_places_copies_around, folder_begin, folder_end)
 {
     own_scene *scene =
-        load_fine("{\"objects\":[{\"translation\":[0,7,0],\"repeat\":{\"count\":[3,1,2],"
-                  "\"step\":[10,0,4]},\"children\":[{\"shape\":\"box\"},{\"shape\":\"cone\"}]}]}");
+        load_fine("{'objects':[{'translation':[0,7,0],'repeat':{'count':[3,1,2],'step':[10,0,4]},'"
+                  "children':[{'shape':'box'},{'shape':'cone'}]}]}");
     own_pose pose;
     double min_x = 1e9, max_x = -1e9, max_z = -1e9;
     assert_int_equal(scene->instance_count, 12);
@@ -243,9 +232,9 @@ TEST_IN(repeat_places_copies_around, folder_begin, folder_end)
 
 TEST_IN(repeated_animation_moves_every_copy, folder_begin, folder_end)
 {
-    own_scene *scene = load_fine(
-        "{\"objects\":[{\"shape\":\"box\",\"repeat\":{\"count\":[4,1,1],\"step\":[3,0,0]},"
-        "\"animation\":{\"translation\":{\"times\":[0,2],\"values\":[[0,0,0],[0,8,0]]}}}]}");
+    own_scene *scene =
+        load_fine("{'objects':[{'shape':'box','repeat':{'count':[4,1,1],'step':[3,0,0]},'animation'"
+                  ":{'translation':{'times':[0,2],'values':[[0,0,0],[0,8,0]]}}}]}");
     own_pose pose;
     assert_int_equal(scene->channel_count, 4);
     assert_int_equal(scene_pose_init(scene, 1.0, &pose), WHIT_OK);
@@ -255,9 +244,8 @@ TEST_IN(repeated_animation_moves_every_copy, folder_begin, folder_end)
 
 TEST_IN(sphereflake_is_instances, folder_begin, folder_end)
 {
-    own_scene *scene =
-        load_fine("{\"objects\":[{\"shape\":\"sphereflake\",\"level\":2,\"segments\":8,"
-                  "\"rings\":4,\"radius\":2}]}");
+    own_scene *scene = load_fine(
+        "{'objects':[{'shape':'sphereflake','level':2,'segments':8,'rings':4,'radius':2}]}");
     own_pose pose;
     assert_int_equal(scene->mesh_count, 1);
     assert_int_equal(scene->instance_count, 91);
@@ -270,14 +258,11 @@ TEST_IN(sphereflake_is_instances, folder_begin, folder_end)
    mesh. */
 TEST_IN(balls_are_spheres, folder_begin, folder_end)
 {
-    struct scene *scene =
-        load_fine("{\"materials\":{\"a\":{\"diffuse\":1},\"b\":{\"diffuse\":0.5}},\"objects\":["
-                  "{\"shape\":\"ball\",\"radius\":2,\"center\":[1,2,3],\"material\":\"b\"},"
-                  "{\"shape\":\"ball\",\"radius\":2,\"center\":[1,2,3],\"material\":\"b\","
-                  "\"scale\":[1,2,3]},"
-                  "{\"shape\":\"ball\",\"radius\":2,\"material\":\"b\"},"
-                  "{\"shape\":\"balls\",\"spheres\":[[0,0,0,1],[5,0,-1,0.25]]},"
-                  "{\"shape\":\"sphereflake\",\"level\":2,\"balls\":true}]}");
+    struct scene *scene = load_fine(
+        "{'materials':{'a':{'diffuse':1},'b':{'diffuse':0.5}},'objects':[{'shape':'ball','radius':"
+        "2,'center':[1,2,3],'material':'b'},{'shape':'ball','radius':2,'center':[1,2,3],'material':"
+        "'b','scale':[1,2,3]},{'shape':'ball','radius':2,'material':'b'},{'shape':'balls','spheres'"
+        ":[[0,0,0,1],[5,0,-1,0.25]]},{'shape':'sphereflake','level':2,'balls':true}]}");
     assert_int_equal(scene->mesh_count, 4);
     assert_int_equal(scene->instance_count, 5);
     assert_int_equal(scene->triangle_total, 0);
@@ -290,30 +275,26 @@ TEST_IN(balls_are_spheres, folder_begin, folder_end)
     assert_true(scene->meshes[0].hi[1] >= 4.0f && scene->meshes[0].hi[1] < 4.00001f);
     assert_int_equal(scene->meshes[3].sphere_count, 91);
     scene_destroy(scene);
-    assert_error("{\"objects\":[{\"shape\":\"ball\",\"segments\":9}]}",
-                 "test.json:1:29: objects[0].segments: a ball has no `segments`");
-    assert_error("{\"objects\":[{\"shape\":\"ball\",\"radius\":0}]}",
-                 "test.json:1:29: objects[0].radius: 0 is out of range (1e-15 to 1e+15)");
-    assert_error("{\"objects\":[{\"shape\":\"balls\"}]}",
-                 "test.json:1:13: objects[0].spheres: 1 to 10000000 spheres [x, y, z, radius] "
-                 "are expected");
-    assert_error("{\"objects\":[{\"shape\":\"balls\",\"spheres\":[[0,0,0]]}]}",
-                 "test.json:1:41: objects[0].spheres[0]: 4 numbers in [ ] are expected");
-    assert_error("{\"objects\":[{\"shape\":\"balls\",\"spheres\":[[0,0,0,-1]]}]}",
-                 "test.json:1:41: objects[0].spheres[0]: the radius must be from 1e-15 to 1e+15");
+    assert_error("{'objects':[{'shape':'ball','segments':9}]}",
+                 "1:29: objects[0].segments: a ball has no `segments`");
+    assert_error("{'objects':[{'shape':'ball','radius':0}]}",
+                 "1:29: objects[0].radius: 0 is out of range (1e-15 to 1e+15)");
+    assert_error("{'objects':[{'shape':'balls'}]}",
+                 "1:13: objects[0].spheres: 1 to 10000000 spheres [x, y, z, radius] are expected");
+    assert_error("{'objects':[{'shape':'balls','spheres':[[0,0,0]]}]}",
+                 "1:41: objects[0].spheres[0]: 4 numbers in [ ] are expected");
+    assert_error("{'objects':[{'shape':'balls','spheres':[[0,0,0,-1]]}]}",
+                 "1:41: objects[0].spheres[0]: the radius must be from 1e-15 to 1e+15");
 }
 
 TEST_IN(materials_mean_what_they_say, folder_begin, folder_end)
 {
-    own_scene *scene =
-        load_fine("{\"materials\":{\n\"plain\":{\"diffuse\":\"#ff0080\"},\n"
-                  "\"glass\":{\"transmission\":0.9,\"ior\":1.33,\"absorption\":[1,2,3]},\n"
-                  "\"mirror\":{\"reflection\":[0.9,0.8,0.7]},\n"
-                  "\"metal\":{\"base_color\":0.5,\"metallic\":1,\"roughness\":0.25},\n"
-                  "\"veil\":{\"opacity\":0.5},\n\"grid\":{\"alpha_cutoff\":0.3},\n"
-                  "\"sign\":{\"unlit\":true,\"color\":[0,1,0]},\n"
-                  "\"wine\":{\"transmission\":1,\"priority\":3,\"one_sided\":true},\n"
-                  "\"stage\":{\"shadow_catcher\":true}}}");
+    own_scene *scene = load_fine(
+        "{'materials':{\n'plain':{'diffuse':'#ff0080'},\n'glass':{'transmission':0.9,'ior':1.33,'"
+        "absorption':[1,2,3]},\n'mirror':{'reflection':[0.9,0.8,0.7]},\n'metal':{'base_color':0.5,'"
+        "metallic':1,'roughness':0.25},\n'veil':{'opacity':0.5},\n'grid':{'alpha_cutoff':0.3},\n'"
+        "sign':{'unlit':true,'color':[0,1,0]},\n'wine':{'transmission':1,'priority':3,'one_sided':"
+        "true},\n'stage':{'shadow_catcher':true}}}");
     const struct scene_material *m = material_named(scene, "plain");
     assert_true(m->diffuse[0] == 1.0f && m->diffuse[1] == 0.0f);
     assert_true(fabsf(m->diffuse[2] - 0.21586f) < 1e-4f); /* 0x80 in sRGB */
@@ -339,10 +320,10 @@ TEST_IN(materials_mean_what_they_say, folder_begin, folder_end)
 
 TEST_IN(patterns_become_textures, folder_begin, folder_end)
 {
-    own_scene *scene = load_fine(
-        "{\"materials\":{\"a\":{\"texture\":{\"checker\":{\"colors\":[1,\"#204060\"],"
-        "\"size\":8}}},\"b\":{\"texture\":{\"checker\":{\"colors\":[1,\"#204060\"]}}},"
-        "\"c\":{\"texture\":{\"brick\":{\"colors\":[1,0]},\"rotation\":90,\"wrap\":\"mirror\"}}}}");
+    own_scene *scene =
+        load_fine("{'materials':{'a':{'texture':{'checker':{'colors':[1,'#204060'],'size':8}}},'b':"
+                  "{'texture':{'checker':{'colors':[1,'#204060']}}},'c':{'texture':{'brick':{'"
+                  "colors':[1,0]},'rotation':90,'wrap':'mirror'}}}}");
     const struct scene_texture_use *a = &material_named(scene, "a")->textures[0];
     const struct scene_texture_use *c = &material_named(scene, "c")->textures[0];
     assert_int_equal(scene->texture_count, 2); /* equal patterns are one */
@@ -366,14 +347,13 @@ static const uint8_t *texel_of(const struct scene *scene, const char *material,
 
 TEST_IN(patterns_of_numbers_are_not_encoded, folder_begin, folder_end)
 {
-    static const char ramp[] = "{\"gradient\":{\"colors\":[0,0.5],\"size\":";
+    static const char ramp[] = "{'gradient':{'colors':[0,0.5],'size':";
     char text[1024];
-    snprintf(text, sizeof text,
-             "{\"materials\":{\"comment\":\"none\",\"a\":{\"texture\":%s1.0}},"
-             "\"opacity_map\":%s4}}},"
-             "\"b\":{\"metallic\":1,\"specular_map\":%s1}},"
-             "\"normal_map\":{\"checker\":{\"colors\":[\"#8080ff\",\"#8080ff\"]}}}}}",
-             ramp, ramp, ramp);
+    snprintf(
+        text, sizeof text,
+        "{'materials':{'comment':'none','a':{'texture':%s1.0}},'opacity_map':%s4}}},'b':{'metallic'"
+        ":1,'specular_map':%s1}},'normal_map':{'checker':{'colors':['#8080ff','#8080ff']}}}}}",
+        ramp, ramp, ramp);
     own_scene *scene = load_fine(text);
     assert_int_equal(texel_of(scene, "a", SCENE_SLOT_DIFFUSE, 255)[0], 188);
     assert_int_equal(texel_of(scene, "a", SCENE_SLOT_OPACITY, 255)[0], 128);
@@ -383,8 +363,8 @@ TEST_IN(patterns_of_numbers_are_not_encoded, folder_begin, folder_end)
     const struct scene_material *a = material_named(scene, "a");
     assert_int_equal(a->textures[SCENE_SLOT_DIFFUSE].wrap_v, SCENE_WRAP_CLAMP);
     assert_int_equal(a->textures[SCENE_SLOT_OPACITY].wrap_v, SCENE_WRAP_REPEAT);
-    assert_error("{\"materials\":{\"a\":{\"texture\":{\"brick\":{\"colors\":[0,[0,2,0]]}}}}}",
-                 "test.json:1:52: materials.a.texture.brick.colors[1]: patterns are at most 1");
+    assert_error("{'materials':{'a':{'texture':{'brick':{'colors':[0,[0,2,0]]}}}}}",
+                 "1:52: materials.a.texture.brick.colors[1]: patterns are at most 1");
 }
 
 TEST_IN(maps_without_their_factor_are_noted, folder_begin, folder_end)
@@ -394,8 +374,8 @@ TEST_IN(maps_without_their_factor_are_noted, folder_begin, folder_end)
         for (int given = 0; given < 2; ++given) {
             char text[256];
             snprintf(text, sizeof text,
-                     "\xef\xbb\xbf{\"objects\":[\n{\"shape\":\"box\",\"material\":{\"%s\":%d,"
-                     "\"%s_map\":{\"brick\":{\"colors\":[0,1]}}}}]}",
+                     "\xef\xbb\xbf{'objects':[\n{'shape':'box','material':{'%s':%d,'%s_map':{'"
+                     "brick':{'colors':[0,1]}}}}]}",
                      maps[i], given, maps[i]);
             own_scene *scene = load_fine(text);
             snprintf(text, sizeof text, "test.json:2: `%s_map` shows nothing", maps[i]);
@@ -406,12 +386,11 @@ TEST_IN(maps_without_their_factor_are_noted, folder_begin, folder_end)
 
 static void lights_cameras_and_sky(void)
 {
-    own_scene *scene = load_fine(
-        "{\"ambient\":[0.1,0.2,0.3],\"environment\":{\"map\":\"sky.pfm\",\"scale\":2},"
-        "\"cameras\":[{\"eye\":[0,0,3],\"fov\":90},{\"eye\":[0,0,3],\"height\":2}],"
-        "\"lights\":[{\"kind\":\"spot\",\"position\":[0,4,0],\"target\":[0,0,0],\"outer\":60,"
-        "\"inner\":30,\"color\":[1,0.5,0],\"intensity\":8},"
-        "{\"kind\":\"directional\",\"direction\":[0,-3,4]}]}");
+    own_scene *scene =
+        load_fine("{'ambient':[0.1,0.2,0.3],'environment':{'map':'sky.pfm','scale':2},'cameras':[{'"
+                  "eye':[0,0,3],'fov':90},{'eye':[0,0,3],'height':2}],'lights':[{'kind':'spot','"
+                  "position':[0,4,0],'target':[0,0,0],'outer':60,'inner':30,'color':[1,0.5,0],'"
+                  "intensity':8},{'kind':'directional','direction':[0,-3,4]}]}");
     assert_int_equal(scene->environment.kind, WHIT_ENVIRONMENT_MAP);
     assert_int_equal(scene->environment.width, 2);
     assert_true(scene->environment.rgb[0] == 4.0f); /* PFM starts at the bottom row */
@@ -427,10 +406,9 @@ static void lights_cameras_and_sky(void)
 
 TEST_IN(flat_emitters, folder_begin, folder_end)
 {
-    own_scene *scene = load_fine(
-        "{\"lights\":[{\"kind\":\"rectangle\",\"position\":[1,4,2],\"u\":[2,0,0],"
-        "\"v\":[0,0,6],\"intensity\":8,\"two_sided\":true},"
-        "{\"kind\":\"triangle\",\"points\":[[1,1,1],[3,1,1],[1,2,1]],\"color\":[1,2,3]}]}");
+    own_scene *scene = load_fine("{'lights':[{'kind':'rectangle','position':[1,4,2],'u':[2,0,0],'v'"
+                                 ":[0,0,6],'intensity':8,'two_sided':true},{'kind':'triangle','"
+                                 "points':[[1,1,1],[3,1,1],[1,2,1]],'color':[1,2,3]}]}");
     const struct scene_light *panel = &scene->lights[0], *corner = &scene->lights[1];
     assert_int_equal(panel->kind, WHIT_LIGHT_RECTANGLE);
     assert_true(panel->position[0] == 0.0 && panel->position[2] == -1.0 && panel->two_sided);
@@ -459,8 +437,8 @@ TEST_IN(textures_are_found, folder_begin, folder_end)
     const uint8_t tga[] = {0, 0, 2, 0, 0,  0,    0, 0, 0, 0, 0, 0,
                            2, 0, 1, 0, 24, 0x20, 3, 2, 1, 6, 5, 4};
     put_data("Wood.TGA", tga, sizeof tga);
-    own_scene *scene = load_fine("{\"materials\":{\"a\":{\"texture\":\".\\\\wood.tga\"},"
-                                 "\"b\":{\"texture\":\"Wood.TGA\"}}}");
+    own_scene *scene =
+        load_fine("{'materials':{'a':{'texture':'.\\\\wood.tga'},'b':{'texture':'Wood.TGA'}}}");
     const struct scene_texture *found =
         &scene->textures[material_named(scene, "a")->textures[0].texture];
     const uint8_t texels[] = {1, 2, 3, 255, 4, 5, 6, 255};
@@ -472,26 +450,26 @@ TEST_IN(textures_are_found, folder_begin, folder_end)
    the scene file names the same file later. */
 TEST_IN(missing_textures_are_refused, folder_begin, folder_end)
 {
-    assert_error("{\"materials\":{\n\"a\":{\"texture\":\"no.png\"}}}",
-                 "test.json:2:6: materials.a.texture: texture `");
-    assert_error("{\"materials\":{\"a\":{\"bump_map\":{\"file\":\"no.png\"}}}}",
-                 "test.json:1:32: materials.a.bump_map.file: texture `");
+    assert_error("{'materials':{\n'a':{'texture':'no.png'}}}",
+                 "2:6: materials.a.texture: texture `");
+    assert_error("{'materials':{'a':{'bump_map':{'file':'no.png'}}}}",
+                 "1:32: materials.a.bump_map.file: texture `");
     assert_non_null(strstr(messages.last_error, "no.png`: there is no such file"));
-    assert_error("{\"materials\":{\"a\":{\"texture\":\"test.json\"}}}",
-                 "test.json:1:20: materials.a.texture: texture `");
+    assert_error("{'materials':{'a':{'texture':'test.json'}}}",
+                 "1:20: materials.a.texture: texture `");
     assert_non_null(strstr(messages.last_error, "it is not a picture"));
     static const char obj_text[] = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
     static const char mtl_text[] = "newmtl m\nmap_Kd no.png\n";
     put_text("a.obj", obj_text);
     put_text("a.mtl", mtl_text);
-    struct scene *scene = load_fine("{\"objects\":[{\"model\":\"a.obj\"}]}");
+    struct scene *scene = load_fine("{'objects':[{'model':'a.obj'}]}");
     const uint8_t magenta[] = {255, 0, 255, 255};
     assert_int_equal(scene->texture_count, 1);
     assert_memory_equal(scene->textures[0].rgba, magenta, sizeof magenta);
     scene_destroy(scene);
-    assert_error("{\"objects\":[{\"model\":\"a.obj\"},\n{\"shape\":\"box\",\"material\":"
-                 "{\"texture\":\"no.png\"}}]}",
-                 "test.json:2:28: objects[1].material.texture: texture `");
+    assert_error(
+        "{'objects':[{'model':'a.obj'},\n{'shape':'box','material':{'texture':'no.png'}}]}",
+        "2:28: objects[1].material.texture: texture `");
 }
 
 TEST(large_textures_are_halved)
