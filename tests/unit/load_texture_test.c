@@ -43,8 +43,8 @@ static const char *write_gltf(const char *const *images, uint32_t count)
     for (uint32_t i = 0; i < count; i++) {
         char *longer[3] = {
             string_format("%s%s%s", lists[0], i ? "," : "", images[i]),
-            string_format("%s%s{\"source\":%u}", lists[1], i ? "," : "", i),
-            string_format("%s%s{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":%u}}}",
+            string_format("%s%s{'source':%u}", lists[1], i ? "," : "", i),
+            string_format("%s%s{'pbrMetallicRoughness':{'baseColorTexture':{'index':%u}}}",
                           lists[2], i ? "," : "", i),
         };
         for (int k = 0; k < 3; k++) {
@@ -52,13 +52,12 @@ static const char *write_gltf(const char *const *images, uint32_t count)
             lists[k] = longer[k];
         }
     }
-    own_memory char *text =
-        string_format("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":24,"
-                      "\"uri\":\"data:;base64," TGA_BASE64 "\"}],"
-                      "\"bufferViews\":[{\"buffer\":0,\"byteLength\":24}],"
-                      "\"images\":[%s],\"textures\":[%s],\"materials\":[%s]}",
-                      lists[0], lists[1], lists[2]);
-    const char *path = put_text("a.gltf", text);
+    const char *path = put_json(
+        "a.gltf",
+        "{'asset':{'version':'2.0'},'buffers':[{'byteLength':24,'uri':'data:;base64," TGA_BASE64
+        "'}],'bufferViews':[{'buffer':0,'byteLength':24}],'images':[%s],'textures':[%s],'materials'"
+        ":[%s]}",
+        lists[0], lists[1], lists[2]);
     for (int k = 0; k < 3; k++)
         free(lists[k]);
     return path;
@@ -73,7 +72,7 @@ static void spell(char spellings[SPELLINGS][112])
         char name[80] = "";
         for (uint32_t k = 0; k < i / 2; k++)
             strcat(name, "./");
-        snprintf(spellings[i], 112, "{\"uri\":\"%s%s\"}", name, i % 2 ? "%61.tga" : "A.TGA");
+        snprintf(spellings[i], 112, "{'uri':'%s%s'}", name, i % 2 ? "%61.tga" : "A.TGA");
     }
 }
 
@@ -97,12 +96,12 @@ TEST_IN(one_file_of_many_names, begin, fixture_end)
 TEST_IN(one_picture_in_many_places, begin, fixture_end)
 {
     static const char *const images[] = {
-        "{\"uri\":\"a.tga\"}",
-        "{\"uri\":\"b.tga\"}",
-        "{\"bufferView\":0}",
-        "{\"bufferView\":0}",
-        "{\"uri\":\"data:;base64," TGA_BASE64 "\"}",
-        "{\"uri\":\"other.tga\"}",
+        "{'uri':'a.tga'}",
+        "{'uri':'b.tga'}",
+        "{'bufferView':0}",
+        "{'bufferView':0}",
+        "{'uri':'data:;base64," TGA_BASE64 "'}",
+        "{'uri':'other.tga'}",
     };
     uint8_t other[sizeof tga];
     memcpy(other, tga, sizeof tga);

@@ -134,54 +134,46 @@ static const char two_coordinates[] =
 static const char three_coordinates[] =
     SOURCE("u", "9", "0.25 0.75 7 1 0 7 0 1 7", "3", PARAM("S") PARAM("T") PARAM("P"));
 
+static const char positions[] =
+    SOURCE("p", "9", "0 0 0 2 0 0 0 0 4", "3", PARAM("X") PARAM("Y") PARAM("Z"));
+
 /* Unit half a metre, z upwards; one triangle on two nodes, the second below the first. */
 static const char collada[] =
-    "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' "
-    "version='1.4.1'><asset><unit meter='0.5' name='half'/><up_axis>Z_UP</up_axis></asset>"
-    "<library_images><image id='i'><init_from>dir\\no%%20such.png</init_from></image>"
-    "</library_images><library_effects><effect id='e'><profile_COMMON>"
-    "<newparam sid='s'><surface type='2D'><init_from>i</init_from></surface></newparam>"
-    "<newparam sid='t'><sampler2D><source>s</source></sampler2D></newparam>"
-    "<technique sid='c'><lambert><emission><color>0.5 0.25 0 1</color></emission>"
-    "<diffuse><texture texture='t' texcoord='U'/></diffuse></lambert></technique>"
-    "</profile_COMMON></effect><effect id='f'><profile_COMMON><technique sid='c'><lambert>"
-    "<diffuse><color>0.25 0.5 0.75 1</color></diffuse></lambert></technique></profile_COMMON>"
-    "</effect><effect id='h'><profile_COMMON><technique sid='c'><phong>"
-    "<diffuse><color>0.25 0.5 0.75 1</color></diffuse><specular><color>0.5 0.25 0 1</color>"
-    "</specular><shininess><float>32</float></shininess><transparent opaque='A_ONE'>"
-    "<color>1 1 1 0.25</color></transparent><transparency><float>1</float></transparency></phong>"
-    "</technique></profile_COMMON></effect></library_effects><library_materials><material id='m' "
-    "name='painted'>"
-    "<instance_effect url='#%s'/></material></library_materials>"
-    "<library_geometries><geometry id='g' name='tri'><mesh>" SOURCE(
-        "p", "9", "0 0 0 2 0 0 0 0 4", "3",
-        PARAM("X") PARAM("Y") PARAM(
-            "Z")) "%s<vertices id='v'><input semantic='POSITION' source='#p'/></vertices>"
-                  "<triangles material='mm' count='1'><input semantic='VERTEX' source='#v' "
-                  "offset='0'/>"
-                  "<input semantic='TEXCOORD' source='#u' offset='0' set='0'/><p>0 1 "
-                  "2</p></triangles></mesh>"
-                  "</geometry></library_geometries>%s<library_visual_scenes><visual_scene "
-                  "id='w'>"
-                  "<node id='a' name='a'><translate>2 0 0</translate><instance_geometry "
-                  "url='#g'>"
-                  "<bind_material><technique_common><instance_material symbol='mm' "
-                  "target='#m'/>"
-                  "</technique_common></bind_material></instance_geometry><node id='b' "
-                  "name='b'>"
-                  "<translate>0 0 6</translate><instance_geometry "
-                  "url='#g'><bind_material><technique_common>"
-                  "<instance_material symbol='mm' "
-                  "target='#m'/></technique_common></bind_material>"
-                  "</instance_geometry></node>%s</node></visual_scene></library_visual_scenes>"
-                  "<scene><instance_visual_scene url='#w'/></scene></COLLADA>";
+    "<?xml version='1.0'?>"
+    "<COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'><asset>"
+    "<unit meter='0.5' name='half'/><up_axis>Z_UP</up_axis></asset><library_images><image id='i'>"
+    "<init_from>dir\\no%%20such.png</init_from></image></library_images><library_effects>"
+    "<effect id='e'><profile_COMMON><newparam sid='s'><surface type='2D'><init_from>i</init_from>"
+    "</surface></newparam><newparam sid='t'><sampler2D><source>s</source></sampler2D></newparam>"
+    "<technique sid='c'><lambert><emission><color>0.5 0.25 0 1</color></emission><diffuse>"
+    "<texture texture='t' texcoord='U'/></diffuse></lambert></technique></profile_COMMON></effect>"
+    "<effect id='f'><profile_COMMON><technique sid='c'><lambert><diffuse><color>"
+    "0.25 0.5 0.75 1</color></diffuse></lambert></technique></profile_COMMON></effect>"
+    "<effect id='h'><profile_COMMON><technique sid='c'><phong><diffuse><color>"
+    "0.25 0.5 0.75 1</color></diffuse><specular><color>0.5 0.25 0 1</color></specular><shininess>"
+    "<float>32</float></shininess><transparent opaque='A_ONE'><color>1 1 1 0.25</color>"
+    "</transparent><transparency><float>1</float></transparency></phong></technique>"
+    "</profile_COMMON></effect></library_effects><library_materials>"
+    "<material id='m' name='painted'><instance_effect url='#%s'/></material></library_materials>"
+    "<library_geometries><geometry id='g' name='tri'><mesh>%s%s<vertices id='v'>"
+    "<input semantic='POSITION' source='#p'/></vertices><triangles material='mm' count='1'>"
+    "<input semantic='VERTEX' source='#v' offset='0'/>"
+    "<input semantic='TEXCOORD' source='#u' offset='0' set='0'/><p>0 1 2</p></triangles></mesh>"
+    "</geometry></library_geometries>%s<library_visual_scenes><visual_scene id='w'>"
+    "<node id='a' name='a'><translate>2 0 0</translate><instance_geometry url='#g'><bind_material>"
+    "<technique_common><instance_material symbol='mm' target='#m'/></technique_common>"
+    "</bind_material></instance_geometry><node id='b' name='b'><translate>0 0 6</translate>"
+    "<instance_geometry url='#g'><bind_material><technique_common>"
+    "<instance_material symbol='mm' target='#m'/></technique_common></bind_material>"
+    "</instance_geometry></node>%s</node></visual_scene></library_visual_scenes><scene>"
+    "<instance_visual_scene url='#w'/></scene></COLLADA>";
 
 /* Writes a COLLADA file with this effect, `uvs` as its texture coordinates, further `libraries`,
    and `nodes` that use them. */
 static const char *write_collada_uvs(const char *effect, const char *uvs, const char *libraries,
                                      const char *nodes)
 {
-    own_memory char *text = string_format(collada, effect, uvs, libraries, nodes);
+    own_memory char *text = string_format(collada, effect, positions, uvs, libraries, nodes);
     assert_non_null(text);
     return put_text("a.dae", text);
 }
@@ -287,46 +279,33 @@ TEST_IN(collada_without_meshes_draws_nothing, fixture_begin, fixture_end)
     assert_true(fixture_noted("a.dae: there are no triangles in it"));
 }
 
-#define NAMES(id, names)                                                                           \
-    "<source id='" id "'><Name_array id='" id "a' count='1'>" names "</Name_array>"                \
-    "<technique_common><accessor source='#" id "a' count='1' stride='1'>"                          \
-    "<param name='JOINT' type='name'/></accessor></technique_common></source>"
-
 static const char moving[] =
-    "<library_cameras><camera id='k'><optics><technique_common><perspective><yfov>45</yfov>"
-    "<znear>1</znear><zfar>9</zfar></perspective></technique_common></optics></camera>"
-    "</library_cameras><library_lights><light id='l'><technique_common><point><color>1 1 1</color>"
-    "</point></technique_common></light></library_lights>"
-    "<library_controllers><controller id='c'><skin source='#g'><bind_shape_matrix>1 0 0 0 0 1 0 0 "
-    "0 0 1 0 0 0 0 1</bind_shape_matrix>" NAMES(
-        "n",
-        "j") "<source id='q'><float_array id='qa' count='16'>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 "
-             "1</float_array>"
-             "<technique_common><accessor source='#qa' count='1' stride='16'><param "
-             "name='TRANSFORM' "
-             "type='float4x4'/></accessor></technique_common></source>"
-             "<source id='h'><float_array id='ha' count='1'>1</float_array><technique_common>"
-             "<accessor source='#ha' count='1' stride='1'><param name='WEIGHT' "
-             "type='float'/></accessor>"
-             "</technique_common></source><joints><input semantic='JOINT' source='#n'/>"
-             "<input semantic='INV_BIND_MATRIX' source='#q'/></joints><vertex_weights count='3'>"
-             "<input semantic='JOINT' source='#n' offset='0'/><input semantic='WEIGHT' source='#h' "
-             "offset='1'/><vcount>1 1 1</vcount><v>0 0 0 0 0 "
-             "0</v></vertex_weights></skin></controller>"
-             "</library_controllers><library_animations><animation id='x'>"
-             "<source id='xt'><float_array id='xta' count='2'>0 1</float_array><technique_common>"
-             "<accessor source='#xta' count='2' stride='1'><param name='TIME' "
-             "type='float'/></accessor>"
-             "</technique_common></source><source id='xv'><float_array id='xva' count='6'>0 0 0 1 "
-             "0 0"
-             "</float_array><technique_common><accessor source='#xva' count='2' stride='3'>"
-             "<param name='X' type='float'/><param name='Y' type='float'/><param name='Z' "
-             "type='float'/>"
-             "</accessor></technique_common></source><sampler id='xs'><input semantic='INPUT' "
-             "source='#xt'/>"
-             "<input semantic='OUTPUT' source='#xv'/></sampler><channel source='#xs' "
-             "target='d/tr'/>"
-             "</animation></library_animations>";
+    "<library_cameras><camera id='k'><optics><technique_common><perspective><yfov>45</yfov><znear>"
+    "1</znear><zfar>9</zfar></perspective></technique_common></optics></camera></library_cameras>"
+    "<library_lights><light id='l'><technique_common><point><color>1 1 1</color></point>"
+    "</technique_common></light></library_lights><library_controllers><controller id='c'>"
+    "<skin source='#g'><bind_shape_matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</bind_shape_matrix>"
+    "<source id='n'><Name_array id='na' count='1'>j</Name_array><technique_common>"
+    "<accessor source='#na' count='1' stride='1'><param name='JOINT' type='name'/></accessor>"
+    "</technique_common></source><source id='q'><float_array id='qa' count='16'>"
+    "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</float_array><technique_common>"
+    "<accessor source='#qa' count='1' stride='16'><param name='TRANSFORM' type='float4x4'/>"
+    "</accessor></technique_common></source><source id='h'><float_array id='ha' count='1'>"
+    "1</float_array><technique_common><accessor source='#ha' count='1' stride='1'>"
+    "<param name='WEIGHT' type='float'/></accessor></technique_common></source><joints>"
+    "<input semantic='JOINT' source='#n'/><input semantic='INV_BIND_MATRIX' source='#q'/></joints>"
+    "<vertex_weights count='3'><input semantic='JOINT' source='#n' offset='0'/>"
+    "<input semantic='WEIGHT' source='#h' offset='1'/><vcount>1 1 1</vcount><v>0 0 0 0 0 0</v>"
+    "</vertex_weights></skin></controller></library_controllers><library_animations>"
+    "<animation id='x'><source id='xt'><float_array id='xta' count='2'>0 1</float_array>"
+    "<technique_common><accessor source='#xta' count='2' stride='1'>"
+    "<param name='TIME' type='float'/></accessor></technique_common></source><source id='xv'>"
+    "<float_array id='xva' count='6'>0 0 0 1 0 0</float_array><technique_common>"
+    "<accessor source='#xva' count='2' stride='3'><param name='X' type='float'/>"
+    "<param name='Y' type='float'/><param name='Z' type='float'/></accessor></technique_common>"
+    "</source><sampler id='xs'><input semantic='INPUT' source='#xt'/>"
+    "<input semantic='OUTPUT' source='#xv'/></sampler><channel source='#xs' target='d/tr'/>"
+    "</animation></library_animations>";
 
 static const char moving_nodes[] =
     "<node id='d' name='d'><translate sid='tr'>0 0 0</translate><node id='j' sid='j' name='j' "
