@@ -108,8 +108,8 @@ void split_median(const struct builder *builder, const struct build_range *range
 
 static inline struct build_box build_box_empty(void)
 {
-    return (struct build_box){f4_set(FLT_MAX, FLT_MAX, FLT_MAX, 0.0f),
-                              f4_set(-FLT_MAX, -FLT_MAX, -FLT_MAX, 0.0f)};
+    return (struct build_box){{FLT_MAX, FLT_MAX, FLT_MAX, 0.0f},
+                              {-FLT_MAX, -FLT_MAX, -FLT_MAX, 0.0f}};
 }
 
 static inline struct build_box build_box_unite(struct build_box a, struct build_box b)
@@ -119,30 +119,26 @@ static inline struct build_box build_box_unite(struct build_box a, struct build_
 
 static inline struct build_box build_record_box(const struct build_record *r)
 {
-    return (struct build_box){f4_xyz(f4_load(r->lo)), f4_xyz(f4_load(r->hi))};
+    return (struct build_box){f4_load(r->lo), f4_load(r->hi)};
 }
 
 static inline struct build_box build_node_box(const struct gpu_bvh_node *node)
 {
-    return (struct build_box){f4_xyz(f4_load(node->lo)), f4_xyz(f4_load(node->hi))};
+    return (struct build_box){f4_load(node->lo), f4_load(node->hi)};
 }
 
 static inline void build_node_write(struct gpu_bvh_node *node, struct build_box box, uint32_t first,
                                     uint32_t count)
 {
-    alignas(16) float lo[4], hi[4];
-    f4_store(lo, box.lo);
-    f4_store(hi, box.hi);
-    memcpy(node->lo, lo, sizeof node->lo);
-    memcpy(node->hi, hi, sizeof node->hi);
+    memcpy(node->lo, &box.lo, sizeof node->lo);
+    memcpy(node->hi, &box.hi, sizeof node->hi);
     node->first = first;
     node->count = count;
 }
 
 static inline f4 build_centroid(struct build_box box)
 {
-    f4 quarter = f4_splat(0.25f);
-    return f4_add(f4_mul(box.lo, quarter), f4_mul(box.hi, quarter));
+    return box.lo * 0.25f + box.hi * 0.25f;
 }
 
 /* build_centroid along one axis. */
@@ -170,8 +166,7 @@ static inline void build_bounds_add(struct build_bounds *b, const struct build_r
    of floats, so that areas neither overflow nor vanish, whatever the scene's unit. */
 static inline f4 build_scale(struct build_box box)
 {
-    alignas(16) float e[4];
-    f4_store(e, f4_sub(box.hi, box.lo));
+    f4 e = box.hi - box.lo;
     float extent = e[0] > e[1] ? e[0] : e[1];
     extent = extent > e[2] ? extent : e[2];
     int exponent = (int)(float_bits(extent) >> 23) - 126;
@@ -181,16 +176,15 @@ static inline f4 build_scale(struct build_box box)
 
 static inline float build_area(struct build_box box, f4 scale)
 {
-    return f4_half_area(f4_sub(f4_mul(box.hi, scale), f4_mul(box.lo, scale)));
+    return f4_half_area(box.hi * scale - box.lo * scale);
 }
 
 /* The build_area of each of three boxes, in the first three lanes. */
 static inline f4 build_areas(const struct build_box box[3], f4 scale)
 {
-    f4 d[3];
-    for (int a = 0; a < 3; ++a)
-        d[a] = f4_sub(f4_mul(box[a].hi, scale), f4_mul(box[a].lo, scale));
-    return f4_half_areas(d[0], d[1], d[2]);
+    return f4_half_areas(box[0].hi * scale - box[0].lo * scale,
+                         box[1].hi * scale - box[1].lo * scale,
+                         box[2].hi * scale - box[2].lo * scale);
 }
 
 /* Whether a leaf is allowed, and costs no more than a pair of nodes and a split of this cost. To
@@ -201,7 +195,7 @@ static inline bool build_leaf_pays(const whit_accel_params *params, uint32_t cou
     return count <= params->leaf_limit && area * (float)count <= area + split_cost;
 }
 
-static inline uint32_t build_widest_axis(const float extent[3])
+static inline uint32_t build_widest_axis(f4 extent)
 {
     uint32_t axis = extent[1] > extent[0] ? 1 : 0;
     return extent[2] > extent[axis] ? 2 : axis;

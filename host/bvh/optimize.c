@@ -10,7 +10,6 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "base/clock.h"
 #include "base/threads.h"
 #include "bvh/build.h"
 #include "bvh/complete.h"
@@ -44,13 +43,9 @@ struct optimizer {
 /* Sets the node's box. True: it was another one before. */
 static bool node_set_box(struct gpu_bvh_node *node, struct build_box box)
 {
-    alignas(16) float lo[4], hi[4];
-    f4_store(lo, box.lo);
-    f4_store(hi, box.hi);
-    bool same =
-        memcmp(node->lo, lo, sizeof node->lo) == 0 && memcmp(node->hi, hi, sizeof node->hi) == 0;
-    memcpy(node->lo, lo, sizeof node->lo);
-    memcpy(node->hi, hi, sizeof node->hi);
+    bool same = memcmp(node->lo, &box.lo, sizeof node->lo) == 0 &&
+                memcmp(node->hi, &box.hi, sizeof node->hi) == 0;
+    build_node_write(node, box, node->first, node->count);
     return !same;
 }
 
@@ -301,7 +296,6 @@ static void emit(const struct optimizer *o, struct bvh *bvh, uint32_t *order)
 
 whit_result bvh_optimize(const whit_log *log, uint32_t thread_count, struct bvh *bvh)
 {
-    double begin_ms = clock_ms();
     if (bvh->node_count <= 4)
         return WHIT_OK;
     struct optimizer o;
@@ -329,6 +323,5 @@ whit_result bvh_optimize(const whit_log *log, uint32_t thread_count, struct bvh 
     }
     optimizer_finish(&o);
     free(order);
-    bvh->build_ms += clock_ms() - begin_ms;
     return WHIT_OK;
 }

@@ -24,24 +24,20 @@ static int bins_for(uint32_t count)
 
 static struct spatial_grid grid_over(const struct build_box *box, uint32_t count)
 {
-    alignas(16) float lo[4], hi[4], scale[4] = {0};
-    f4_store(lo, box->lo);
-    f4_store(hi, box->hi);
-    struct spatial_grid grid = {.origin = f4_mul(box->lo, f4_splat(0.5f)), .bins = bins_for(count)};
+    struct spatial_grid grid = {.origin = box->lo * 0.5f, .bins = bins_for(count)};
     for (int a = 0; a < 3; ++a) {
-        float half = 0.5f * hi[a] - 0.5f * lo[a];
+        float half = 0.5f * box->hi[a] - 0.5f * box->lo[a];
         bool some = half > 1e-35f;
-        scale[a] = some ? (float)grid.bins / half : 0.0f;
-        grid.start[a] = lo[a];
+        grid.bins_per_half[a] = some ? (float)grid.bins / half : 0.0f;
+        grid.start[a] = box->lo[a];
         grid.width[a] = some ? 2.0f * (half / (float)grid.bins) : 0.0f;
     }
-    grid.bins_per_half = f4_load(scale);
     return grid;
 }
 
 static inline f4 grid_position(const struct spatial_grid *grid, f4 x)
 {
-    f4 position = f4_mul(f4_sub(f4_mul(x, f4_splat(0.5f)), grid->origin), grid->bins_per_half);
+    f4 position = (x * 0.5f - grid->origin) * grid->bins_per_half;
     return f4_min(position, f4_splat((float)(grid->bins - 1)));
 }
 
@@ -51,13 +47,9 @@ static inline struct span span_of(const struct spatial_grid *grid, struct build_
                                   uint32_t flags)
 {
     if (flags & SPATIAL_WHOLE)
-        box.lo = box.hi = f4_add(f4_mul(box.lo, f4_splat(0.5f)), f4_mul(box.hi, f4_splat(0.5f)));
-    alignas(16) int first[4], last[4];
-    alignas(16) float end[4];
-    f4 at = grid_position(grid, box.hi);
-    f4_truncate(grid_position(grid, box.lo), first);
-    f4_truncate(at, last);
-    f4_store(end, at);
+        box.lo = box.hi = box.lo * 0.5f + box.hi * 0.5f;
+    f4 end = grid_position(grid, box.hi);
+    i4 first = f4_truncate(grid_position(grid, box.lo)), last = f4_truncate(end);
     struct span span;
     for (int a = 0; a < 3; ++a) {
         span.first[a] = first[a];
@@ -80,13 +72,13 @@ static struct chopped chopped_make(const struct clip_triangle *triangle, uint32_
     struct chopped c = {.axis = axis};
     for (int i = 0; i < 3; ++i) {
         const float *p = triangle->v[i];
-        c.v[i] = f4_set(p[0], p[1], p[2], 0.0f);
+        c.v[i] = (f4){p[0], p[1], p[2], 0.0f};
         c.at[i] = p[axis];
     }
     for (int i = 0; i < 3; ++i) {
         int next = i < 2 ? i + 1 : 0;
         float along = c.at[next] - c.at[i];
-        c.slope[i] = f4_mul(f4_sub(c.v[next], c.v[i]), f4_splat(along != 0.0f ? 1.0f / along : 0));
+        c.slope[i] = (c.v[next] - c.v[i]) * (along != 0.0f ? 1.0f / along : 0.0f);
     }
     return c;
 }
@@ -98,7 +90,7 @@ static inline void chopped_cut(const struct chopped *c, float plane, struct buil
         float a = c->at[i], b = c->at[i < 2 ? i + 1 : 0];
         if ((a < plane) == (b < plane))
             continue;
-        f4 p = f4_add(c->v[i], f4_mul(c->slope[i], f4_splat(plane - a)));
+        f4 p = c->v[i] + c->slope[i] * (plane - a);
         *out = build_box_unite(*out, (struct build_box){p, p});
     }
 }
@@ -109,15 +101,11 @@ static void chop(const struct clip_triangle *triangle, const struct spatial_grid
                  uint32_t axis, int first, int last, struct build_box box, struct build_box *bins)
 {
     struct chopped c = chopped_make(triangle, axis);
-    alignas(16) float ends[2][4];
-    f4_store(ends[0], box.lo);
-    f4_store(ends[1], box.hi);
-    float from = ends[0][axis];
+    float from = box.lo[axis];
     struct build_box cut = build_box_empty();
     chopped_cut(&c, from, &cut);
     for (int i = first; i <= last; ++i) {
-        float to =
-            i < last ? grid->start[axis] + grid->width[axis] * (float)(i + 1) : ends[1][axis];
+        float to = i < last ? grid->start[axis] + grid->width[axis] * (float)(i + 1) : box.hi[axis];
         struct build_box next = build_box_empty(), part;
         chopped_cut(&c, to, &next);
         part = build_box_unite(cut, next);

@@ -30,11 +30,10 @@ static float axis_scale(float extent, uint32_t bins)
 
 static struct bin_grid grid_over(const struct build_box *centroids, uint32_t bins)
 {
-    alignas(16) float e[4];
-    f4_store(e, f4_sub(centroids->hi, centroids->lo));
+    f4 e = centroids->hi - centroids->lo;
     return (struct bin_grid){
         .origin = centroids->lo,
-        .scale = f4_set(axis_scale(e[0], bins), axis_scale(e[1], bins), axis_scale(e[2], bins), 0),
+        .scale = {axis_scale(e[0], bins), axis_scale(e[1], bins), axis_scale(e[2], bins), 0.0f},
         .last = f4_splat((float)(bins - 1)),
         .bins = bins,
     };
@@ -53,8 +52,7 @@ static inline void bins_add(struct bins *bins, const struct bin_grid *grid,
                             const struct build_record *record)
 {
     struct build_box box = build_record_box(record);
-    alignas(16) int at[4];
-    f4_truncate(bin_grid_position(grid, build_centroid(box)), at);
+    i4 at = f4_truncate(bin_grid_position(grid, build_centroid(box)));
     for (int a = 0; a < 3; ++a) {
         bins->box[at[a]][a] = build_box_unite(bins->box[at[a]][a], box);
         ++bins->count[at[a]][a];
@@ -133,30 +131,26 @@ static void sweep_axes(const struct bins *bins, uint32_t bin_count, f4 scale,
     struct build_box empty = build_box_empty(), sums[3] = {empty, empty, empty};
     for (uint32_t i = bin_count - 1; i > 0; --i) {
         bins_sum(sums, bins->box[i]);
-        count = f4_add(count, f4_from_counts(bins->count[i]));
-        f4 some = f4_less(f4_splat(0.0f), count);
-        f4 cost = f4_mul(build_areas(sums, scale), count);
-        right_cost[i] = f4_select(some, cost, f4_splat(INFINITY));
+        count += f4_from_counts(bins->count[i]);
+        f4 cost = build_areas(sums, scale) * count;
+        right_cost[i] = f4_select(count > 0.0f, cost, f4_splat(INFINITY));
     }
     sums[0] = sums[1] = sums[2] = empty;
     count = f4_splat(0.0f);
     for (uint32_t i = 1; i < bin_count; ++i) {
         bins_sum(sums, bins->box[i - 1]);
-        count = f4_add(count, f4_from_counts(bins->count[i - 1]));
-        f4 cost = f4_add(f4_mul(build_areas(sums, scale), count), right_cost[i]);
-        f4 better = f4_less(cost, best_cost);
+        count += f4_from_counts(bins->count[i - 1]);
+        f4 cost = build_areas(sums, scale) * count + right_cost[i];
+        i4 better = cost < best_cost;
         best_cost = f4_select(better, cost, best_cost);
         best_at = f4_select(better, f4_splat((float)i), best_at);
     }
-    alignas(16) float cost[4];
-    alignas(16) int at[4];
-    f4_store(cost, best_cost);
-    f4_truncate(best_at, at);
+    i4 at = f4_truncate(best_at);
     for (uint32_t a = 0; a < 3; ++a) {
-        if (cost[a] < best->cost) {
+        if (best_cost[a] < best->cost) {
             best->axis = a;
             best->bin = (uint32_t)at[a];
-            best->cost = cost[a];
+            best->cost = best_cost[a];
         }
     }
 }

@@ -26,7 +26,7 @@ void bins_find(const struct build_record *records, const struct build_range *ran
 
 static inline f4 bin_grid_position(const struct bin_grid *grid, f4 centroid)
 {
-    return f4_min(f4_mul(f4_sub(centroid, grid->origin), grid->scale), grid->last);
+    return f4_min((centroid - grid->origin) * grid->scale, grid->last);
 }
 
 /* 1: a record with this centroid goes left; 0: right. */

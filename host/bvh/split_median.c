@@ -63,9 +63,7 @@ void split_median(const struct builder *builder, const struct build_range *range
     enum { SMALL = 24 };
     struct build_record *own = builder->records + range->first;
     uint32_t count = range->count, left = count / 2;
-    alignas(16) float extent[4];
-    f4_store(extent, f4_sub(range->bounds.centroids.hi, range->bounds.centroids.lo));
-    uint32_t axis = build_widest_axis(extent);
+    uint32_t axis = build_widest_axis(range->bounds.centroids.hi - range->bounds.centroids.lo);
     (void)scratch;
     if (count <= SMALL)
         insertion_sort(own, count, axis);

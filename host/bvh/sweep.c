@@ -210,7 +210,7 @@ static void halve(const struct builder *builder, const struct build_range *range
                   struct build_halves *halves)
 {
     const struct sweep *sweep = builder->context;
-    float extent[3];
+    f4 extent = f4_splat(0.0f);
     for (uint32_t a = 0; a < 3; ++a) {
         const uint32_t *list = sweep->list[a] + range->first;
         extent[a] = build_centroid_along(&sweep->records[list[range->count - 1]], a) -

@@ -13,22 +13,19 @@ struct small_range {
 void small_put(struct small *small, uint32_t index, const struct build_record *record)
 {
     small->box[index] = build_record_box(record);
-    f4_store(small->centroid[index], build_centroid(small->box[index]));
+    small->centroid[index] = build_centroid(small->box[index]);
 }
 
 void small_sort(struct small *small, uint32_t count)
 {
     f4 one = f4_splat(1.0f);
     for (uint32_t i = 0; i < count; ++i) {
-        f4 own = f4_load(small->centroid[i]), rank = f4_splat(0.0f);
+        f4 own = small->centroid[i], rank = f4_splat(0.0f);
         for (uint32_t j = 0; j < i; ++j) /* before i unless above it */
-            rank = f4_add(
-                rank, f4_select(f4_less(own, f4_load(small->centroid[j])), f4_splat(0.0f), one));
+            rank += f4_select(own < small->centroid[j], f4_splat(0.0f), one);
         for (uint32_t j = i + 1; j < count; ++j)
-            rank = f4_add(
-                rank, f4_select(f4_less(f4_load(small->centroid[j]), own), one, f4_splat(0.0f)));
-        alignas(16) int at[4];
-        f4_truncate(rank, at);
+            rank += f4_select(small->centroid[j] < own, one, f4_splat(0.0f));
+        i4 at = f4_truncate(rank);
         for (int a = 0; a < 3; ++a)
             small->order[0][a][at[a]] = (uint8_t)i;
     }
@@ -44,8 +41,8 @@ static inline void sides_add(struct build_box sides[3], const struct small *s,
 
 static inline f4 keys_at(const struct small *s, const uint8_t *order[3], uint32_t i)
 {
-    return f4_set(s->centroid[order[0][i]][0], s->centroid[order[1][i]][1],
-                  s->centroid[order[2][i]][2], 0.0f);
+    return (f4){s->centroid[order[0][i]][0], s->centroid[order[1][i]][1],
+                s->centroid[order[2][i]][2], 0.0f};
 }
 
 /* Sweeps all three axes at once. No plane separates equal centroids; with `equal_too` a cut may
@@ -60,27 +57,23 @@ static void sweep_all(const struct small *s, const struct small_range *r, f4 sca
     struct build_box empty = build_box_empty(), sides[3] = {empty, empty, empty};
     for (uint32_t i = r->count - 1; i > 0; --i) {
         sides_add(sides, s, order, i);
-        right_cost[i] = f4_mul(build_areas(sides, scale), f4_splat((float)(r->count - i)));
+        right_cost[i] = build_areas(sides, scale) * (float)(r->count - i);
     }
     sides[0] = sides[1] = sides[2] = empty;
-    f4 before = keys_at(s, order, 0), differs = f4_less(before, keys_at(s, order, r->count - 1));
+    f4 before = keys_at(s, order, 0);
+    i4 differs = before < keys_at(s, order, r->count - 1);
     for (uint32_t i = 1; i < r->count; ++i) {
         sides_add(sides, s, order, i - 1);
-        f4 left_cost = f4_mul(build_areas(sides, scale), f4_splat((float)i));
-        f4 cost = f4_add(left_cost, right_cost[i]), key = keys_at(s, order, i);
-        f4 allowed = equal_too ? differs : f4_less(before, key);
-        f4 better = f4_both(allowed, f4_less(cost, best_cost));
+        f4 cost = build_areas(sides, scale) * (float)i + right_cost[i], key = keys_at(s, order, i);
+        i4 better = (equal_too ? differs : before < key) & (cost < best_cost);
         best_cost = f4_select(better, cost, best_cost);
         best_at = f4_select(better, f4_splat((float)i), best_at);
         before = key;
     }
-    alignas(16) float cost[4];
-    alignas(16) int at[4];
-    f4_store(cost, best_cost);
-    f4_truncate(best_at, at);
+    i4 at = f4_truncate(best_at);
     for (uint32_t a = 0; a < 3; ++a) {
-        if (cost[a] < best->cost)
-            *best = (struct small_cut){a, (uint32_t)at[a], cost[a]};
+        if (best_cost[a] < best->cost)
+            *best = (struct small_cut){a, (uint32_t)at[a], best_cost[a]};
     }
 }
 
@@ -90,7 +83,7 @@ static void sweep_two(const struct small *s, const struct small_range *r, f4 sca
                       struct small_cut *best)
 {
     uint32_t i = s->order[r->side][0][r->first], j = s->order[r->side][0][r->first + 1];
-    f4 ci = f4_load(s->centroid[i]), cj = f4_load(s->centroid[j]);
+    f4 ci = s->centroid[i], cj = s->centroid[j];
     unsigned differ = (f4_below(ci, cj) | f4_below(cj, ci)) & 7u;
     if (differ == 0)
         return;
@@ -112,7 +105,7 @@ struct small_cut small_find(const struct small *small, uint32_t count, f4 scale)
 
 static uint32_t widest_axis(const struct small *s, const struct small_range *r)
 {
-    float extent[3];
+    f4 extent = f4_splat(0.0f);
     for (uint32_t a = 0; a < 3; ++a) {
         const uint8_t *order = s->order[r->side][a] + r->first;
         extent[a] = s->centroid[order[r->count - 1]][a] - s->centroid[order[0]][a];

@@ -8,7 +8,7 @@
 enum { BUILD_SMALL = 16 };
 struct small {
     struct build_box box[BUILD_SMALL];
-    alignas(16) float centroid[BUILD_SMALL][4];
+    f4 centroid[BUILD_SMALL];
     uint8_t order[2][3]
                  [BUILD_SMALL];  /* nodes read one side; they write the other for their children */
     uint8_t leaves[BUILD_SMALL]; /* the result: boxes leaf by leaf */
