@@ -11,17 +11,14 @@
 #include "bvh/bvh.h"
 #include "bvh/f4.h"
 
-/* The builders, called by bvh_build with at least one box. `resolved` has no 0 that stands for a
+/* Builders, called by bvh_build with at least one box. `resolved` has no 0 that stands for a
    default, except `bins` of WHIT_BUILD_BINNED, where 0 lets the number follow the size of the node.
    They fill in *out, but for what bvh_complete computes; on failure the caller frees what is in
    it. */
-whit_result records_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                          const whit_accel_params *resolved, struct bvh *out);
-whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                        const whit_accel_params *resolved, struct bvh *out);
-whit_result spatial_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                          const struct bvh_triangles *triangles, const whit_accel_params *resolved,
-                          struct bvh *out);
+typedef whit_result build_fn(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
+                             const struct bvh_triangles *triangles,
+                             const whit_accel_params *resolved, struct bvh *out);
+build_fn records_build, sweep_build, spatial_build;
 
 /* Bits of `flags` of a record. */
 #define SPATIAL_WHOLE 1u /* must not be split */

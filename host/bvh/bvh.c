@@ -8,18 +8,11 @@
 #include "bvh/complete.h"
 #include "bvh/optimize.h"
 
-static bool builder_known(whit_build builder)
-{
-    switch (builder) {
-    case WHIT_BUILD_BINNED:
-    case WHIT_BUILD_MEDIAN:
-    case WHIT_BUILD_SWEEP:
-    case WHIT_BUILD_SPATIAL:
-    case WHIT_BUILD_NONE:
-        return true;
-    }
-    return false;
-}
+static build_fn *const builders[] = {
+    [WHIT_BUILD_NONE] = records_build,    [WHIT_BUILD_BINNED] = records_build,
+    [WHIT_BUILD_MEDIAN] = records_build,  [WHIT_BUILD_SWEEP] = sweep_build,
+    [WHIT_BUILD_SPATIAL] = spatial_build,
+};
 
 /* Replaces every 0 by its default. */
 static void params_resolve(const whit_accel_params *in, whit_accel_params *out)
@@ -38,7 +31,7 @@ static void params_resolve(const whit_accel_params *in, whit_accel_params *out)
 whit_result bvh_check(const whit_log *log, const whit_accel_params *params)
 {
     whit_result result = WHIT_ERROR_USAGE;
-    if (!builder_known(params->build))
+    if ((size_t)params->build >= sizeof builders / sizeof *builders)
         log_error(log, "there is no builder %d", (int)params->build);
     else if (params->bins == 1 || params->bins > 256)
         log_error(log, "%u bins: 2 to 256 are possible", params->bins);
@@ -53,23 +46,6 @@ whit_result bvh_check(const whit_log *log, const whit_accel_params *params)
     else
         result = WHIT_OK;
     return result;
-}
-
-static whit_result build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                         const struct bvh_triangles *triangles, const whit_accel_params *params,
-                         struct bvh *out)
-{
-    switch (params->build) {
-    case WHIT_BUILD_NONE:
-    case WHIT_BUILD_BINNED:
-    case WHIT_BUILD_MEDIAN:
-        return records_build(log, boxes, count, params, out);
-    case WHIT_BUILD_SWEEP:
-        return sweep_build(log, boxes, count, params, out);
-    case WHIT_BUILD_SPATIAL:
-        return spatial_build(log, boxes, count, triangles, params, out);
-    }
-    return WHIT_ERROR_USAGE; /* not reached: bvh_check has refused all others */
 }
 
 whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
@@ -88,7 +64,7 @@ whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t
                   BVH_FIRST_MASK / 2);
         return WHIT_ERROR_INPUT;
     }
-    result = build(log, boxes, count, triangles, &resolved, out);
+    result = builders[resolved.build](log, boxes, count, triangles, &resolved, out);
     if (result == WHIT_OK)
         bvh_complete(out, resolved.threads);
     if (result == WHIT_OK && resolved.optimize)

@@ -2,6 +2,7 @@
 #ifndef BVH_BVH_H
 #define BVH_BVH_H
 
+#include <float.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -59,6 +60,15 @@ static inline double bvh_half_area(const struct gpu_bvh_node *node)
     double y = (double)node->hi[1] - (double)node->lo[1];
     double z = (double)node->hi[2] - (double)node->lo[2];
     return x * y + y * z + z * x;
+}
+
+/* Whether a box is finite and not inside out; false for NaN. */
+static inline bool bvh_box_is_sane(const float lo[3], const float hi[3])
+{
+    bool sane = true;
+    for (int i = 0; i < 3; ++i)
+        sane &= lo[i] >= -FLT_MAX && lo[i] <= hi[i] && hi[i] <= FLT_MAX;
+    return sane;
 }
 
 static inline struct bvh_box bvh_node_box(const struct gpu_bvh_node *node)

@@ -25,14 +25,6 @@ struct record_context {
     struct record_chunk *chunks;
 };
 
-static bool box_is_good(const struct bvh_box *box)
-{
-    bool good = true;
-    for (int i = 0; i < 3; ++i)
-        good &= box->lo[i] >= -FLT_MAX && box->lo[i] <= box->hi[i] && box->hi[i] <= FLT_MAX;
-    return good;
-}
-
 static void make_chunk(void *user, uint32_t index)
 {
     const struct record_context *context = user;
@@ -42,7 +34,7 @@ static void make_chunk(void *user, uint32_t index)
     for (uint32_t i = begin; i < end; ++i) {
         const struct bvh_box *box = &context->boxes[i];
         struct build_record *record = &context->records[i];
-        chunk.bad |= !box_is_good(box);
+        chunk.bad |= !bvh_box_is_sane(box->lo, box->hi);
         for (int a = 0; a < 3; ++a) {
             /* + 0 turns -0 into +0, so that bounds do not depend on the order of their parts. */
             record->lo[a] = box->lo[a] + 0.0f;
@@ -139,8 +131,10 @@ static void grow_small(const struct builder *builder, const struct build_output 
 }
 
 whit_result records_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                          const whit_accel_params *resolved, struct bvh *out)
+                          const struct bvh_triangles *triangles, const whit_accel_params *resolved,
+                          struct bvh *out)
 {
+    (void)triangles;
     struct builder builder = {.params = resolved, .halve = split_median};
     struct build_bounds bounds;
     whit_result result =

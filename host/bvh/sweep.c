@@ -65,12 +65,12 @@ static void sort_axis(void *user, uint32_t axis)
 {
     struct sorting *sorting = user;
     uint32_t count = sorting->count, histogram[DIGITS][BUCKETS];
-    uint64_t *items = array_alloc(2 * (size_t)count, sizeof *items), *other = items + count;
-    if (!items) {
+    uint64_t *const begin = array_alloc(2 * (size_t)count, sizeof *begin);
+    if (!begin) {
         atomic_store(&sorting->failed, true);
         return;
     }
-    uint64_t *begin = items;
+    uint64_t *items = begin, *other = begin + count;
     memset(histogram, 0, sizeof histogram);
     items_make(sorting, axis, items, histogram);
     for (uint32_t d = 0; d < DIGITS; ++d) {
@@ -266,8 +266,10 @@ static whit_result sweep_prepare(const whit_log *log, struct sweep *sweep, uint3
 }
 
 whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,
-                        const whit_accel_params *resolved, struct bvh *out)
+                        const struct bvh_triangles *triangles, const whit_accel_params *resolved,
+                        struct bvh *out)
 {
+    (void)triangles;
     struct sweep sweep = {.mark = NULL};
     struct builder builder = {.params = resolved,
                               .context = &sweep,
