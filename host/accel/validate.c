@@ -21,10 +21,9 @@ struct view {
     uint32_t primitive_count; /* each is in the leaves once, or at least once with `split` */
     bool split;               /* primitives may have several slots; every slot is used */
     uint32_t leaf_limit;
-    /* The primitive in a slot, and the box of the record there; false: there is no box to compare
-       with. */
+    /* The primitive in a slot, and the box of the record there. */
     uint32_t (*primitive)(const void *user, uint32_t slot);
-    bool (*box)(const void *user, uint32_t slot, struct bvh_box *box);
+    struct bvh_box (*box)(const void *user, uint32_t slot);
     const void *user;
 };
 
@@ -61,14 +60,6 @@ static bool box_holds(const float lo[3], const float hi[3], const float inner_lo
     return holds;
 }
 
-static bool box_is_sane(const struct gpu_bvh_node *node)
-{
-    bool sane = true;
-    for (int i = 0; i < 3; ++i)
-        sane &= node->lo[i] >= -FLT_MAX && node->lo[i] <= node->hi[i] && node->hi[i] <= FLT_MAX;
-    return sane;
-}
-
 /* Checks that the box of leaf `node` overlaps `box`, the box of one of its primitives, and adds the
    overlap to the bounds of all parts of that primitive found so far. */
 static bool check_part(const struct view *view, struct walk *walk, uint32_t primitive,
@@ -90,7 +81,6 @@ static bool check_slot(const struct view *view, struct walk *walk, uint32_t slot
                        const struct gpu_bvh_node *node)
 {
     uint32_t primitive = view->primitive(view->user, slot);
-    struct bvh_box box;
     if (primitive >= view->primitive_count)
         REFUSE(view, "a leaf names a primitive out of range, at record", slot);
     if (walk->slot_seen[slot - view->first_slot]++)
@@ -104,8 +94,7 @@ static bool check_slot(const struct view *view, struct walk *walk, uint32_t slot
     walk->primitives += !walk->primitive_seen[primitive];
     walk->primitive_seen[primitive] = 1;
     ++walk->slots;
-    if (!view->box(view->user, slot, &box))
-        return true;
+    struct bvh_box box = view->box(view->user, slot);
     if (view->split)
         return check_part(view, walk, primitive, &box, node);
     if (!box_holds(node->lo, node->hi, box.lo, box.hi))
@@ -116,11 +105,9 @@ static bool check_slot(const struct view *view, struct walk *walk, uint32_t slot
 /* Checks that the parts of each primitive together cover its box. */
 static bool check_parts(const struct view *view, const struct walk *walk)
 {
-    struct bvh_box box;
     for (uint32_t i = 0; i < view->slot_count; ++i) {
         uint32_t slot = view->first_slot + i;
-        if (!view->box(view->user, slot, &box))
-            return true;
+        struct bvh_box box = view->box(view->user, slot);
         const struct bvh_box *parts = &walk->parts[view->primitive(view->user, slot)];
         if (!box_holds(parts->lo, parts->hi, box.lo, box.hi))
             REFUSE(view, "the leaves of a primitive do not cover it, record", slot);
@@ -203,7 +190,7 @@ static bool walk_run(const struct view *view, struct walk *walk)
     while (walk->top > 0) {
         struct visit at = walk->stack[--walk->top];
         const struct gpu_bvh_node *node = &view->nodes[at.node];
-        if (!box_is_sane(node))
+        if (!bvh_box_is_sane(node->lo, node->hi))
             REFUSE(view, "a box is not finite, or inside out, node", at.node);
         if (!check_count(view, at.node) ||
             !(bvh_count(node) > 0 ? check_leaf(view, walk, at) : check_inner(view, walk, at)) ||
@@ -308,13 +295,10 @@ static uint32_t bvh_primitive(const void *user, uint32_t slot)
     return ((const struct bvh_user *)user)->bvh->order[slot];
 }
 
-static bool bvh_primitive_box(const void *user, uint32_t slot, struct bvh_box *box)
+static struct bvh_box bvh_primitive_box(const void *user, uint32_t slot)
 {
     const struct bvh_user *u = user;
-    if (!u->boxes)
-        return false;
-    *box = u->boxes[u->bvh->order[slot]];
-    return true;
+    return u->boxes[u->bvh->order[slot]];
 }
 
 whit_result bvh_validate(const whit_log *log, const struct bvh *bvh, const struct bvh_box *boxes,
@@ -344,6 +328,97 @@ whit_result bvh_validate(const whit_log *log, const struct bvh *bvh, const struc
     return same ? WHIT_OK : WHIT_ERROR_FAILED;
 }
 
+/* ---- Split triangles ---- */
+
+/* The sample points: the triangle's points whose barycentric coordinates are multiples of 1/6,
+   corners included; one bit each. */
+enum { STEPS = 6, POINTS = (STEPS + 1) * (STEPS + 2) / 2 };
+
+/* A coordinate of sample point (i, j), clamped to the triangle's box against rounding. */
+static double point_along(const struct gpu_triangle *t, int i, int j, int axis)
+{
+    double a = (double)t->v0[axis], b = (double)t->v1[axis], c = (double)t->v2[axis];
+    double at = (a * i + b * j + c * (STEPS - i - j)) / STEPS;
+    double lo = a < b ? a : b, hi = a > b ? a : b;
+    lo = c < lo ? c : lo;
+    hi = c > hi ? c : hi;
+    return at < lo ? lo : at > hi ? hi : at;
+}
+
+static uint32_t points_inside(const struct gpu_triangle *t, const struct gpu_bvh_node *node)
+{
+    uint32_t inside = 0;
+    int point = 0;
+    if (t->flags & TRIANGLE_SPHERE) {
+        struct bvh_box box = accel_record_box(t);
+        bool in = true;
+        for (int axis = 0; axis < 3; ++axis)
+            in &= box.lo[axis] >= node->lo[axis] && box.hi[axis] <= node->hi[axis];
+        return in ? (1u << POINTS) - 1 : 0;
+    }
+    for (int i = 0; i <= STEPS; ++i) {
+        for (int j = 0; i + j <= STEPS; ++j, ++point) {
+            bool in = true;
+            for (int axis = 0; axis < 3 && in; ++axis) {
+                double at = point_along(t, i, j, axis);
+                in = at >= (double)node->lo[axis] && at <= (double)node->hi[axis];
+            }
+            inside |= (uint32_t)in << point;
+        }
+    }
+    return inside;
+}
+
+/* For one primitive: a bit for each sample point that is inside its leaves; and 1 + its first slot,
+   0: none yet. */
+struct seen {
+    uint32_t points, slot;
+};
+
+/* All records of a primitive must be equal: else a hit would depend on which one a ray meets. */
+static bool is_same_record(const struct view *view, const struct gpu_triangle *triangles,
+                           struct seen *seen, uint32_t slot)
+{
+    if (seen->slot == 0)
+        seen->slot = slot + 1;
+    if (memcmp(&triangles[seen->slot - 1], &triangles[slot], sizeof *triangles) == 0)
+        return true;
+    REFUSE(view, "two records of one primitive differ", slot);
+}
+
+/* Checks split triangles: each must lie in its leaves with all of its area, and be the same
+   triangle in each of them. It tests sample points, and does not use the clipper that made the
+   parts. */
+static whit_result parts_check(const struct view *view, const struct accel *accel)
+{
+    const struct gpu_bvh_node *nodes = &view->nodes[view->first_node];
+    if (!view->split)
+        return WHIT_OK;
+    struct seen *seen = array_alloc_zeroed(view->primitive_count, sizeof *seen);
+    if (!seen) {
+        log_error(view->log, "%s: out of memory for validation", view->name);
+        return WHIT_ERROR_MEMORY;
+    }
+    bool same = true;
+    for (uint32_t i = 0; same && i < view->node_count; ++i) {
+        for (uint32_t k = 0; same && i != 1 && k < bvh_count(&nodes[i]); ++k) {
+            uint32_t slot = nodes[i].first + k;
+            struct seen *of = &seen[view->primitive(view->user, slot)];
+            of->points |= points_inside(&accel->triangles[slot], &nodes[i]);
+            same = is_same_record(view, accel->triangles, of, slot);
+        }
+    }
+    uint32_t first_bad = 0;
+    while (first_bad < view->primitive_count && seen[first_bad].points == (1u << POINTS) - 1)
+        ++first_bad;
+    free(seen);
+    if (same && first_bad == view->primitive_count)
+        return WHIT_OK;
+    if (same)
+        refuse(view, "a part of a primitive is in none of its leaves", first_bad);
+    return WHIT_ERROR_FAILED;
+}
+
 /* ---- Trees of a scene ---- */
 
 struct mesh_user {
@@ -356,28 +431,9 @@ static uint32_t mesh_primitive(const void *user, uint32_t slot)
     return ((const struct mesh_user *)user)->accel->triangles[slot].primitive;
 }
 
-static bool mesh_primitive_box(const void *user, uint32_t slot, struct bvh_box *box)
+static struct bvh_box mesh_primitive_box(const void *user, uint32_t slot)
 {
-    const struct gpu_triangle *t = &((const struct mesh_user *)user)->accel->triangles[slot];
-    *box = accel_record_box(t);
-    return true;
-}
-
-static bool record_matches(const struct scene_mesh *mesh, const struct gpu_triangle *t)
-{
-    const float *v[3] = {t->v0, t->v1, t->v2};
-    bool same = true;
-    if (!(t->flags & TRIANGLE_SPHERE) != !mesh->sphere_count)
-        return false;
-    if (mesh->sphere_count) {
-        const float *sphere = &mesh->spheres[4 * (size_t)t->primitive];
-        return memcmp(t->v0, sphere, sizeof t->v0) == 0 && t->v1[0] == sphere[3];
-    }
-    for (size_t k = 0; k < 3; ++k) {
-        uint32_t corner = mesh->indices[3 * (size_t)t->primitive + k];
-        same &= memcmp(v[k], &mesh->positions[3 * (size_t)corner], 3 * sizeof(float)) == 0;
-    }
-    return same;
+    return accel_record_box(&((const struct mesh_user *)user)->accel->triangles[slot]);
 }
 
 /* The record's primitive, numbered through all instances; UINT32_MAX: the record names none. */
@@ -395,9 +451,11 @@ static uint32_t flat_primitive(const void *user, uint32_t slot)
 }
 
 /* Whether `v` is `p` under the instance's transform, within 8 roundings: the record was computed in
-   double, but the instance has its matrix in float. */
+   double, but the instance has its matrix in float. `in` NULL: whether both are the same. */
 static bool is_placed(const struct gpu_instance *in, const float *p, const float v[3])
 {
+    if (!in)
+        return memcmp(v, p, 3 * sizeof *v) == 0;
     const float *rows[3] = {in->forward0, in->forward1, in->forward2};
     const float origin[3] = {in->origin_x, in->origin_y, in->origin_z};
     bool placed = true;
@@ -413,17 +471,20 @@ static bool is_placed(const struct gpu_instance *in, const float *p, const float
     return placed;
 }
 
-/* Whether a record of the world tree is its triangle or sphere under its instance's transform. */
-static bool record_is_placed(const struct accel *accel, const struct gpu_triangle *t)
+/* Whether a record is its triangle or sphere; in a tree for all, under its instance's transform. */
+static bool record_matches(const struct mesh_user *user, const struct gpu_triangle *t)
 {
-    const struct gpu_instance *in = &accel->instances[t->flags >> TRIANGLE_INSTANCE_SHIFT];
-    const struct scene_mesh *mesh = &accel->scene->meshes[in->mesh];
+    const struct accel *accel = user->accel;
+    const struct gpu_instance *in =
+        user->mesh ? NULL : &accel->instances[t->flags >> TRIANGLE_INSTANCE_SHIFT];
+    const struct scene_mesh *mesh = in ? &accel->scene->meshes[in->mesh] : user->mesh;
     if (!(t->flags & TRIANGLE_SPHERE) != !mesh->sphere_count)
         return false;
     if (mesh->sphere_count) {
         const float *sphere = &mesh->spheres[4 * (size_t)t->primitive];
-        double radius = (double)sphere[3] * (double)in->forward0[0];
-        return is_placed(in, sphere, t->v0) && fabs(radius - (double)t->v1[0]) <= radius * 0x1p-21;
+        double radius = (double)sphere[3] * (in ? (double)in->forward0[0] : 1.0);
+        return is_placed(in, sphere, t->v0) &&
+               fabs(radius - (double)t->v1[0]) <= (in ? radius * 0x1p-21 : 0.0);
     }
     const uint32_t *corner = &mesh->indices[3 * (size_t)t->primitive];
     return is_placed(in, &mesh->positions[3 * (size_t)corner[0]], t->v0) &&
@@ -434,20 +495,10 @@ static bool record_is_placed(const struct accel *accel, const struct gpu_triangl
 static bool records_match(const struct view *view, const struct mesh_user *user)
 {
     for (uint32_t i = 0; i < view->slot_count; ++i) {
-        const struct gpu_triangle *t = &user->accel->triangles[view->first_slot + i];
-        if (!(user->mesh ? record_matches(user->mesh, t) : record_is_placed(user->accel, t)))
+        if (!record_matches(user, &user->accel->triangles[view->first_slot + i]))
             REFUSE(view, "a record is not its triangle", view->first_slot + i);
     }
     return true;
-}
-
-static whit_result parts_check(const struct view *view, const struct accel *accel)
-{
-    if (!view->split)
-        return WHIT_OK;
-    return accel_validate_parts(view->log, view->name, &view->nodes[view->first_node],
-                                view->node_count, accel->triangles, view->primitive_count,
-                                view->primitive, view->user);
 }
 
 static struct view view_over(const struct accel_mesh *m, const struct mesh_user *user)
@@ -543,12 +594,13 @@ static uint32_t instance_primitive(const void *user, uint32_t slot)
     return ((const struct instance_user *)user)->dense[slot];
 }
 
-static bool instance_box(const void *user, uint32_t slot, struct bvh_box *box)
+static struct bvh_box instance_box(const void *user, uint32_t slot)
 {
     const struct accel *accel = ((const struct instance_user *)user)->accel;
     const struct gpu_instance *in = &accel->instances[slot];
     const float *forward[3] = {in->forward0, in->forward1, in->forward2};
     const float origin[3] = {in->origin_x, in->origin_y, in->origin_z};
+    struct bvh_box box;
     double rows[12];
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c)
@@ -557,10 +609,10 @@ static bool instance_box(const void *user, uint32_t slot, struct bvh_box *box)
     }
     struct accel_extent extent = accel_transformed_box(rows, &accel->meshes[in->mesh].box);
     for (int i = 0; i < 3; ++i) {
-        box->lo[i] = (float)extent.lo[i];
-        box->hi[i] = (float)extent.hi[i];
+        box.lo[i] = (float)extent.lo[i];
+        box.hi[i] = (float)extent.hi[i];
     }
-    return true;
+    return box;
 }
 
 /* Numbers the instances that are not empty; false when one does not refer to its mesh. */
