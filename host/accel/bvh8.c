@@ -130,6 +130,7 @@ whit_result accel_widen(struct accel *accel)
     good = good && widen(accel->nodes, accel->instance_root, out, &out->instance_root,
                          &out->instance_depth);
     if (!good) {
+        accel_bvh8_finish(out); /* trees made in part are not kept */
         log_error(&accel->log, "%s: out of memory for its trees", accel->scene->name);
         return WHIT_ERROR_MEMORY;
     }

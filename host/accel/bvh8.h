@@ -5,7 +5,7 @@
 #include "accel/accel.h"
 
 /* Makes accel->bvh8 from the present trees; call it again after accel_pose. Mesh trees that did not
-   change are kept. */
+   change are kept. WHIT_ERROR_MEMORY, logged: then it is empty. */
 WHIT_CHECK whit_result accel_widen(struct accel *accel);
 void accel_bvh8_finish(struct accel_bvh8 *bvh8);
 

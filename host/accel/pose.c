@@ -79,8 +79,7 @@ static float box_reach(const struct bvh_box *box)
     return reach;
 }
 
-/* Sets the tree that the instance's rays enter. */
-static void instance_enter(struct gpu_instance *out, const struct accel_mesh *mesh)
+void accel_instance_enter(struct gpu_instance *out, const struct accel_mesh *mesh)
 {
     out->root = mesh->root;
     out->center_x = mesh->box.lo[0] * 0.5f + mesh->box.hi[0] * 0.5f;
@@ -101,7 +100,7 @@ static bool instance_fill(const struct affine *forward, const struct affine *inv
         .shade_base = mesh->shade_base,
         .mesh = mesh_index,
     };
-    instance_enter(out, mesh);
+    accel_instance_enter(out, mesh);
     bool good = isfinite(out->origin_x) && isfinite(out->origin_y) && isfinite(out->origin_z);
     good &= row_store(out->inverse0, &inverse->m[0]);
     good &= row_store(out->inverse1, &inverse->m[4]);
@@ -313,7 +312,7 @@ static whit_result pose_flat(struct accel *accel, const struct scene_pose *pose)
     if (result != WHIT_OK)
         return result;
     for (uint32_t i = 0; i < accel->instance_count; ++i)
-        instance_enter(&posing->instances[i], &accel->meshes[0]);
+        accel_instance_enter(&posing->instances[i], &accel->meshes[0]);
     instances_exchange(accel);
     return WHIT_OK;
 }

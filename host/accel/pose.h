@@ -6,6 +6,9 @@
 
 void accel_posing_destroy(struct accel_posing *posing);
 
+/* Sets the tree that an instance's rays enter: its root, and the centre and reach of its box. */
+void accel_instance_enter(struct gpu_instance *out, const struct accel_mesh *mesh);
+
 /* Moves the instances: rewrites `instances` and the tree over them, leaves mesh trees alone. */
 WHIT_CHECK whit_result accel_pose(struct accel *accel, const struct scene_pose *pose);
 /* Returns at once where the accel has the pose of that time, else does as accel_pose. Renderers of

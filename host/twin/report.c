@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "accel/pose.h"
 #include "base/array.h"
 #include "base/random.h"
 #include "base/threads.h"
@@ -116,7 +117,8 @@ static void measure_line(const struct measuring *measuring, uint32_t index, stru
     double total = measuring->area_ends[measuring->mesh_count - 1];
     uint32_t mesh_index = mesh_at(measuring, ((double)index + 0.5) / measuring->ray_count * total);
     struct accel_mesh *mesh = &measuring->accel->meshes[mesh_index];
-    struct gpu_instance instance = {.root = mesh->root};
+    struct gpu_instance instance = {0};
+    accel_instance_enter(&instance, mesh);
     struct accel alone = *measuring->accel;
     if (!alone.flat) { /* a flat scene is one mesh already */
         alone.meshes = mesh;

@@ -1,5 +1,6 @@
 /* Trees with eight children per node have the leaves of the binary trees, each once and with the
    same box. */
+#include "../wrapped.h"
 #include "accel/bvh8.h"
 #include "accel/pose.h"
 #include "accel_fixture.h"
@@ -53,30 +54,57 @@ static void check_tree(const struct accel *accel, uint32_t root, uint32_t root8,
                   eight->depth);
 }
 
+static struct world world_of_rings(bool flat)
+{
+    struct scene *scene = scene_begin(&silent, "wide");
+    scene_put(scene, mesh_terrain(10.0, 2.0, 60, 3), NULL);
+    uint32_t ring = scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
+    random_state = 5;
+    for (int i = 0; i < 30; ++i) {
+        struct affine placed = placement_random(&random_state, 4.0, i % 3 == 0);
+        scene_put_again(scene, ring, &(struct put){.matrix = &placed});
+    }
+    return world_of(
+        scene, (whit_accel_params){.instances = flat ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON});
+}
+
+static void check_trees(struct accel *accel)
+{
+    assert_int_equal(accel_widen(accel), WHIT_OK);
+    for (uint32_t i = 0; i < accel->mesh_count; ++i)
+        check_tree(accel, accel->meshes[i].root, accel->bvh8.mesh_roots[i], accel->bvh8.mesh_depth);
+    if (!accel->flat)
+        check_tree(accel, accel->instance_root, accel->bvh8.instance_root,
+                   accel->bvh8.instance_depth);
+}
+
+/* The second time only the trees of meshes that have moved are made again. */
 TEST(leaves_are_those_of_two)
 {
     for (int flat = 0; flat < 2; ++flat) {
-        struct scene *scene = scene_begin(&silent, "wide");
-        scene_put(scene, mesh_terrain(10.0, 2.0, 60, 3), NULL);
-        uint32_t ring = scene_put_mesh(scene, mesh_torus(1.0, 0.3, 20, 10));
-        random_state = 5;
-        for (int i = 0; i < 30; ++i) {
-            struct affine placed = placement_random(&random_state, 4.0, i % 3 == 0);
-            scene_put_again(scene, ring, &(struct put){.matrix = &placed});
-        }
-        own_world world = world_of(
-            scene, (whit_accel_params){.instances = flat ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON});
-        struct accel *accel = world.accel;
-        assert_int_equal(accel_pose(accel, &world.pose), WHIT_OK);
-        /* The second time only the trees of meshes that have moved are made again. */
-        for (int again = 0; again < 2; ++again) {
-            assert_int_equal(accel_widen(accel), WHIT_OK);
-            for (uint32_t i = 0; i < (flat ? 1 : accel->mesh_count); ++i)
-                check_tree(accel, accel->meshes[i].root, accel->bvh8.mesh_roots[i],
-                           accel->bvh8.mesh_depth);
-            if (!flat)
-                check_tree(accel, accel->instance_root, accel->bvh8.instance_root,
-                           accel->bvh8.instance_depth);
-        }
+        own_world world = world_of_rings(flat);
+        check_trees(world.accel);
+        check_trees(world.accel);
+    }
+}
+
+static uint32_t reallocs_left = UINT32_MAX;
+
+WRAPPED(void *, realloc, void *block, size_t size_bytes)
+{
+    return reallocs_left-- > 0 ? __real_realloc(block, size_bytes) : NULL;
+}
+
+/* Where memory ran out, the next try begins anew. */
+TEST(trees_made_in_part_are_not_kept)
+{
+    own_world world = world_of_rings(false);
+    for (uint32_t left = 0; left < 3; ++left) {
+        reallocs_left = left;
+        whit_result result = accel_widen(world.accel);
+        reallocs_left = UINT32_MAX;
+        assert_int_equal(result, WHIT_ERROR_MEMORY);
+        check_trees(world.accel);
+        accel_bvh8_finish(&world.accel->bvh8);
     }
 }

@@ -248,6 +248,24 @@ TEST(hits_save_visits)
     assert_true(report.measured_inner_nodes > 0.3 * report.predicted_inner_nodes);
 }
 
+/* Rays widen the boxes of split triangles by a share of how far away the mesh is, not its origin. */
+TEST(split_triangles_are_visited_alike_anywhere)
+{
+    whit_accel_report reports[2];
+    for (int far = 0; far < 2; ++far) {
+        random_state = 5;
+        struct soup soup = soup_rooms(500);
+        for (uint32_t i = 0; i < 9 * soup.count; ++i)
+            soup.positions[i] += far ? 0x1p16f : 0.0f;
+        own_world world = world_of_soup(
+            soup, (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .leaf_limit = 1});
+        assert_true(world.accel->clipped);
+        reports[far] = report_of(&world, 20000);
+    }
+    assert_near(reports[1].measured_inner_nodes / reports[0].measured_inner_nodes, 1.0, 0.01);
+    assert_near(reports[1].measured_triangles / reports[0].measured_triangles, 1.0, 0.01);
+}
+
 /* A mesh counts once, whatever the number of its instances, and by the area of its box. */
 TEST(meshes_are_weighed_by_area)
 {
