@@ -74,11 +74,13 @@ uint32_t accel_flat_first(const struct accel_flat *flat, uint32_t instance)
 static whit_result check_size(const struct accel *accel, uint64_t triangles, uint64_t vertices)
 {
     const struct scene *scene = accel->scene;
+    bool wide = vertices > FLAT_VERTICES_MAX;
     char what[64];
-    snprintf(what, sizeof what, "its %llu triangles without instances",
-             (unsigned long long)triangles);
-    if (triangles > FLAT_TRIANGLES_MAX || vertices > FLAT_VERTICES_MAX)
-        log_error(&accel->log, "%s: %s are more than %u", scene->name, what, FLAT_TRIANGLES_MAX);
+    snprintf(what, sizeof what, "its %llu %s without instances",
+             (unsigned long long)(wide ? vertices : triangles), wide ? "vertices" : "triangles");
+    if (wide || triangles > FLAT_TRIANGLES_MAX)
+        log_error(&accel->log, "%s: %s are more than %u", scene->name, what,
+                  wide ? FLAT_VERTICES_MAX : FLAT_TRIANGLES_MAX);
     else if (scene_could_afford(scene, &accel->log, triangles * FLAT_TRIANGLE_BYTES, what))
         return WHIT_OK;
     return WHIT_ERROR_INPUT;

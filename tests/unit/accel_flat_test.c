@@ -355,10 +355,13 @@ TEST(a_scene_takes_one_tree_where_nothing_is_lost)
 
 /* ---- Too many ---- */
 
-static struct scene *many_spheres(uint32_t count, uint64_t memory_limit)
+/* `unused`: only one triangle of each sphere, among the vertices of all. */
+static struct scene *many_spheres(uint32_t count, uint64_t memory_limit, bool unused)
 {
     struct scene *scene = new_scene();
     uint32_t mesh = scene_put_mesh(scene, mesh_sphere(1.0, 150, 100));
+    if (unused)
+        scene->meshes[mesh].triangle_count = 1;
     for (uint32_t i = 0; i < count; ++i)
         scene_put_again(scene, mesh, NULL);
     scene_ready(scene);
@@ -371,15 +374,17 @@ TEST(too_many_triangles_are_refused)
     static const struct {
         uint32_t spheres;
         uint64_t memory_limit;
+        bool unused;
         const char *said, *also; /* NULL: nothing */
     } rows[] = {
-        {5000, 0, "flat: its 148500000 triangles without instances are more", ""},
-        {9, UINT64_C(16) << 20, "flat: its 267300 triangles without instances would take",
+        {5000, 0, false, "flat: its 148500000 triangles without instances are more", ""},
+        {80000, 0, true, "flat: its 1220080000 vertices without instances are more", "1073741823"},
+        {9, UINT64_C(16) << 20, false, "flat: its 267300 triangles without instances would take",
          "--memory-limit"},
-        {9, UINT64_C(160) << 20, NULL, NULL},
+        {9, UINT64_C(160) << 20, false, NULL, NULL},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
-        own_scene *scene = many_spheres(rows[i].spheres, rows[i].memory_limit);
+        own_scene *scene = many_spheres(rows[i].spheres, rows[i].memory_limit, rows[i].unused);
         own_accel *accel = NULL;
         whit_result result = accel_create(&silent, scene, &flatten, &accel);
         assert_int_equal(result, rows[i].said ? WHIT_ERROR_INPUT : WHIT_OK);
