@@ -72,7 +72,7 @@ static whit_result mesh_build(struct creation *creation, uint32_t index, uint32_
     struct box_context context = {mesh, boxes};
     threads_for(thread_count, (count + SPAN_RECORDS - 1) / SPAN_RECORDS, make_boxes, &context);
     if (split)
-        material_bits_whole(accel->scene, creation->materials, mesh, whole);
+        material_bits_whole(creation->materials, mesh, whole);
     const struct bvh_triangles triangles = {mesh->positions, mesh->indices, whole};
     result = bvh_build(&accel->log, boxes, count, &triangles, &params, &creation->trees[index]);
 done:
@@ -168,9 +168,8 @@ static void write_span(void *context, uint32_t index)
         node->first += i == 1 ? 0 : bvh_count(node) ? mesh->first_triangle : mesh->first_node;
     }
     for (uint32_t i = span.begin; i < span.end && i < tree->reference_count; ++i)
-        creation->accel->triangles[mesh->first_triangle + i] =
-            material_bits_record(creation->accel->scene, creation->materials,
-                                 &creation->accel->scene->meshes[span.mesh], tree->order[i]);
+        creation->accel->triangles[mesh->first_triangle + i] = material_bits_record(
+            creation->materials, &creation->accel->scene->meshes[span.mesh], tree->order[i]);
 }
 
 static whit_result meshes_write(struct creation *creation)

@@ -233,7 +233,7 @@ static void place_triangles(void *user, uint32_t index)
     if (mesh->sphere_count)
         place_spheres(f, span);
     if (f->whole && span->begin == 0)
-        material_bits_whole(f->accel->scene, flat->materials, mesh, f->whole + first);
+        material_bits_whole(flat->materials, mesh, f->whole + first);
 }
 
 static whit_result refuse_range(const struct flattening *f)
@@ -311,7 +311,7 @@ static void write_records(void *user, uint32_t index)
         uint32_t triangle = f->tree.order[i], instance = f->owners[triangle];
         const uint32_t *corner = &f->indices[3 * (size_t)triangle];
         struct gpu_triangle record =
-            material_bits_record(accel->scene, accel->world->materials, mesh_of(f, instance),
+            material_bits_record(accel->world->materials, mesh_of(f, instance),
                                  triangle - accel->world->first_triangle[instance]);
         memcpy(record.v0, &f->positions[3 * (size_t)corner[0]], sizeof record.v0);
         if (record.flags & TRIANGLE_SPHERE) {

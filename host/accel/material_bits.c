@@ -99,43 +99,34 @@ void material_bits_scan(const struct scene *scene, struct material_bits *out)
         out[i] = material_bits(&scene->materials[i], area_lights, colors);
 }
 
-void material_bits_whole(const struct scene *scene, const struct material_bits *materials,
-                         const struct scene_mesh *mesh, uint8_t *whole)
+void material_bits_whole(const struct material_bits *materials, const struct scene_mesh *mesh,
+                         uint8_t *whole)
 {
-    for (uint32_t i = 0; i < scene_mesh_primitives(mesh); ++i) {
-        uint32_t material = mesh->materials ? mesh->materials[i] : 0;
-        bool filters =
-            material < scene->material_count && (materials[material].flags & TRIANGLE_FILTER) != 0;
-        whole[i] = mesh->sphere_count || filters;
-    }
+    for (uint32_t i = 0; i < scene_mesh_primitives(mesh); ++i)
+        whole[i] = mesh->sphere_count || (materials[mesh->materials[i]].flags & TRIANGLE_FILTER);
 }
 
 static uint32_t mesh_flags(const struct material_bits *bits, const struct scene_mesh *mesh)
 {
-    return bits->flags | (bits->masked && mesh->colors ? TRIANGLE_CUTOUT : 0);
+    return bits->flags | (bits->masked && mesh->colors ? TRIANGLE_CUTOUT : 0) |
+           (mesh->sphere_count ? TRIANGLE_SPHERE : 0);
 }
 
-struct gpu_triangle material_bits_record(const struct scene *scene,
-                                         const struct material_bits *materials,
+struct gpu_triangle material_bits_record(const struct material_bits *materials,
                                          const struct scene_mesh *mesh, uint32_t primitive)
 {
-    struct gpu_triangle out = {.primitive = primitive};
+    const struct material_bits *bits = &materials[mesh->materials[primitive]];
+    struct gpu_triangle out = {
+        .primitive = primitive, .flags = mesh_flags(bits, mesh), .shadow = bits->shadow};
     if (mesh->sphere_count) {
         const float *sphere = &mesh->spheres[4 * (size_t)primitive];
         memcpy(out.v0, sphere, sizeof out.v0);
         out.v1[0] = out.v2[0] = sphere[3];
-        out.flags = TRIANGLE_SPHERE;
     } else {
         const uint32_t *corner = &mesh->indices[3 * (size_t)primitive];
         memcpy(out.v0, &mesh->positions[3 * (size_t)corner[0]], sizeof out.v0);
         memcpy(out.v1, &mesh->positions[3 * (size_t)corner[1]], sizeof out.v1);
         memcpy(out.v2, &mesh->positions[3 * (size_t)corner[2]], sizeof out.v2);
-    }
-    uint32_t material = mesh->materials ? mesh->materials[primitive] : 0;
-    if (material < scene->material_count) {
-        const struct material_bits *bits = &materials[material];
-        out.flags |= mesh_flags(bits, mesh);
-        out.shadow = bits->shadow;
     }
     return out;
 }
@@ -144,13 +135,9 @@ uint32_t accel_primitive_flags(const struct accel *accel, uint32_t instance, uin
 {
     const struct scene *scene = accel->scene;
     const struct scene_mesh *mesh = &scene->meshes[scene->instances[instance].mesh];
-    uint32_t material = mesh->materials ? mesh->materials[primitive] : 0;
-    uint32_t flags = mesh->sphere_count ? TRIANGLE_SPHERE : 0;
-    if (material >= scene->material_count)
-        return flags;
-    struct material_bits bits =
-        material_bits(&scene->materials[material], has_area_lights(scene), has_colors(scene));
-    return flags | mesh_flags(&bits, mesh);
+    struct material_bits bits = material_bits(&scene->materials[mesh->materials[primitive]],
+                                              has_area_lights(scene), has_colors(scene));
+    return mesh_flags(&bits, mesh);
 }
 
 bool accel_filters_patterned(const struct accel *accel)

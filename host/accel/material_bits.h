@@ -16,10 +16,9 @@ struct material_bits {
 void material_bits_scan(const struct scene *scene, struct material_bits *out);
 /* Sets whole[i] to 1 for each triangle i that must stay in one leaf, else to 0: filters, whose
    optical depth is added each time a shadow ray hits one of their records. */
-void material_bits_whole(const struct scene *scene, const struct material_bits *materials,
-                         const struct scene_mesh *mesh, uint8_t *whole);
-struct gpu_triangle material_bits_record(const struct scene *scene,
-                                         const struct material_bits *materials,
+void material_bits_whole(const struct material_bits *materials, const struct scene_mesh *mesh,
+                         uint8_t *whole);
+struct gpu_triangle material_bits_record(const struct material_bits *materials,
                                          const struct scene_mesh *mesh, uint32_t primitive);
 
 /* Whether any record has TRIANGLE_FILTER_DETAIL. */

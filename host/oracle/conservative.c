@@ -54,9 +54,6 @@ double conservative_entry(const struct conservative_walk *walk, const float box_
     return reached ? start : INFINITY;
 }
 
-typedef void (*leaf_fn)(struct conservative_walk *walk, const struct gpu_bvh_node *leaf,
-                        uint32_t instance);
-
 /* A node, and the t at which the ray enters its box. */
 struct entered {
     uint32_t node;
@@ -69,28 +66,6 @@ static struct entered enter_node(const struct conservative_walk *walk, uint32_t 
     return (struct entered){index, conservative_entry(walk, node->lo, node->hi)};
 }
 
-static void walk_tree(struct conservative_walk *walk, uint32_t root, leaf_fn leaf,
-                      uint32_t instance)
-{
-    struct entered stack[STACK_SIZE];
-    uint32_t top = 0;
-    stack[top++] = enter_node(walk, root);
-    while (top > 0 && !walk->done) {
-        struct entered at = stack[--top];
-        const struct gpu_bvh_node *node = &walk->accel->nodes[at.node];
-        if (at.entry == INFINITY || !begins_in_time(walk, at.entry))
-            continue;
-        if (bvh_count(node) > 0) {
-            leaf(walk, node, instance);
-            continue;
-        }
-        struct entered a = enter_node(walk, node->first), b = enter_node(walk, node->first + 1);
-        bool b_nearer = b.entry < a.entry;
-        stack[top++] = b_nearer ? a : b;
-        stack[top++] = b_nearer ? b : a;
-    }
-}
-
 static void visit_records(struct conservative_walk *walk, uint32_t first, uint32_t count,
                           uint32_t instance)
 {
@@ -101,10 +76,31 @@ static void visit_records(struct conservative_walk *walk, uint32_t first, uint32
     }
 }
 
-static void visit_mesh_leaf(struct conservative_walk *walk, const struct gpu_bvh_node *leaf,
-                            uint32_t instance)
+static void visit_instance(struct conservative_walk *walk, uint32_t index);
+
+/* Walks the tree of a mesh, of this instance, or with HIT_NONE that over instances. */
+static void walk_tree(struct conservative_walk *walk, uint32_t root, uint32_t instance)
 {
-    visit_records(walk, leaf->first, bvh_count(leaf), instance);
+    struct entered stack[STACK_SIZE];
+    uint32_t top = 0;
+    stack[top++] = enter_node(walk, root);
+    while (top > 0 && !walk->done) {
+        struct entered at = stack[--top];
+        const struct gpu_bvh_node *node = &walk->accel->nodes[at.node];
+        if (at.entry == INFINITY || !begins_in_time(walk, at.entry))
+            continue;
+        if (bvh_count(node) > 0) {
+            if (instance == HIT_NONE)
+                visit_instance(walk, node->first);
+            else
+                visit_records(walk, node->first, bvh_count(node), instance);
+            continue;
+        }
+        struct entered a = enter_node(walk, node->first), b = enter_node(walk, node->first + 1);
+        bool b_nearer = b.entry < a.entry;
+        stack[top++] = b_nearer ? a : b;
+        stack[top++] = b_nearer ? b : a;
+    }
 }
 
 static void visit_mesh(struct conservative_walk *walk, const struct accel_mesh *mesh,
@@ -113,7 +109,7 @@ static void visit_mesh(struct conservative_walk *walk, const struct accel_mesh *
     if (walk->brute)
         visit_records(walk, mesh->first_triangle, mesh->record_count, instance);
     else if (mesh->node_count > 0)
-        walk_tree(walk, mesh->first_node, visit_mesh_leaf, instance);
+        walk_tree(walk, mesh->first_node, instance);
 }
 
 static void visit_instance(struct conservative_walk *walk, uint32_t index)
@@ -125,13 +121,6 @@ static void visit_instance(struct conservative_walk *walk, uint32_t index)
     if (walk->accel->single_identity || walk->enter(walk, index))
         visit_mesh(walk, &walk->accel->meshes[instance->mesh], index);
     walk->ray = world;
-}
-
-static void visit_instance_leaf(struct conservative_walk *walk, const struct gpu_bvh_node *leaf,
-                                uint32_t instance)
-{
-    (void)instance;
-    visit_instance(walk, leaf->first);
 }
 
 void conservative_walk_run(struct conservative_walk *walk)
@@ -146,6 +135,6 @@ void conservative_walk_run(struct conservative_walk *walk)
         for (uint32_t i = 0; i < accel->instance_count && !walk->done; ++i)
             visit_instance(walk, i);
     } else if (accel->instance_root != BVH_EMPTY_REF) {
-        walk_tree(walk, 0, visit_instance_leaf, 0);
+        walk_tree(walk, 0, HIT_NONE);
     }
 }

@@ -9,23 +9,19 @@
 
 struct query {
     const struct accel *accel;
-    struct affine placed; /* object to world, of the current instance */
+    const struct scene_pose *pose; /* NULL: leaves hold records, else instances */
+    struct affine placed;          /* object to world, of the current instance */
     double p[3], best2;
 };
 
-/* Squared distance to the world-space box of a transformed box: at most that to its contents. */
-static double box_distance2(const struct query *q, const float lo[3], const float hi[3])
+/* Squared distance to the world-space box of a node's box: at most that to its contents. */
+static double node_distance2(const struct query *q, const struct gpu_bvh_node *node)
 {
+    const struct bvh_box box = bvh_node_box(node);
+    struct accel_extent world = accel_transformed_box(q->placed.m, &box);
     double sum = 0.0;
     for (int r = 0; r < 3; ++r) {
-        const double *row = &q->placed.m[4 * r];
-        double from = row[3], to = row[3];
-        for (int k = 0; k < 3; ++k) {
-            double a = row[k] * (double)lo[k], b = row[k] * (double)hi[k];
-            from += fmin(a, b);
-            to += fmax(a, b);
-        }
-        double away = fmax(fmax(from - q->p[r], q->p[r] - to), 0.0);
+        double away = fmax(fmax(world.lo[r] - q->p[r], q->p[r] - world.hi[r]), 0.0);
         sum += away * away;
     }
     return sum;
@@ -104,52 +100,30 @@ static void visit_record(struct query *q, uint32_t index)
     q->best2 = fmin(q->best2, triangle_distance2(q->p, v));
 }
 
-static void visit_node(struct query *q, const struct gpu_bvh_node *node)
+static void visit(struct query *q, uint32_t ref)
 {
-    if (box_distance2(q, node->lo, node->hi) >= q->best2)
-        return;
-    if (bvh_count(node)) {
-        for (uint32_t i = 0; i < bvh_count(node); ++i)
-            visit_record(q, node->first + i);
-        return;
-    }
-    const struct gpu_bvh_node *pair = &q->accel->nodes[node->first];
-    bool second = box_distance2(q, pair[1].lo, pair[1].hi) < box_distance2(q, pair->lo, pair->hi);
-    visit_node(q, &pair[second]);
-    visit_node(q, &pair[!second]);
-}
-
-static void visit_tree(struct query *q, uint32_t ref)
-{
-    if (ref != BVH_EMPTY_REF && ref >> BVH_COUNT_SHIFT) {
-        for (uint32_t i = 0; i < ref >> BVH_COUNT_SHIFT; ++i)
-            visit_record(q, (ref & BVH_FIRST_MASK) + i);
-    } else if (ref != BVH_EMPTY_REF) {
-        visit_node(q, &q->accel->nodes[ref & BVH_FIRST_MASK]);
-        visit_node(q, &q->accel->nodes[(ref & BVH_FIRST_MASK) + 1]);
-    }
-}
-
-/* Goes down the tree over instances, whose boxes are in world space. */
-static void visit_instances(struct query *q, const struct scene_pose *pose, uint32_t ref)
-{
+    uint32_t first = ref & BVH_FIRST_MASK, count = ref >> BVH_COUNT_SHIFT;
     if (ref == BVH_EMPTY_REF)
         return;
-    if (ref >> BVH_COUNT_SHIFT) {
-        uint32_t instance = ref & BVH_FIRST_MASK;
-        q->placed = pose->instances[instance];
-        visit_tree(q, q->accel->instances[instance].root);
-        q->placed = affine_identity();
+    if (count > 0 && q->pose) {
+        struct query inside = *q;
+        inside.pose = NULL;
+        inside.placed = q->pose->instances[first];
+        visit(&inside, q->accel->instances[first].root);
+        q->best2 = inside.best2;
         return;
     }
-    const struct gpu_bvh_node *pair = &q->accel->nodes[ref & BVH_FIRST_MASK];
-    double away2[2] = {box_distance2(q, pair[0].lo, pair[0].hi),
-                       box_distance2(q, pair[1].lo, pair[1].hi)};
+    for (uint32_t i = 0; i < count; ++i)
+        visit_record(q, first + i);
+    if (count > 0)
+        return;
+    const struct gpu_bvh_node *pair = &q->accel->nodes[first];
+    double away2[2] = {node_distance2(q, &pair[0]), node_distance2(q, &pair[1])};
     bool second = away2[1] < away2[0];
     for (int i = 0; i < 2; ++i) {
         bool at = i ? !second : second;
         if (away2[at] < q->best2)
-            visit_instances(q, pose, accel_node_ref(&pair[at]));
+            visit(q, accel_node_ref(&pair[at]));
     }
 }
 
@@ -157,12 +131,12 @@ static void visit_instances(struct query *q, const struct scene_pose *pose, uint
 static double distance2(const struct accel *accel, const struct scene_pose *pose, const double p[3],
                         double most2)
 {
-    struct query q = {
-        .accel = accel, .placed = affine_identity(), .p = {p[0], p[1], p[2]}, .best2 = most2};
-    if (accel->flat)
-        visit_tree(&q, accel->meshes[0].root);
-    else
-        visit_instances(&q, pose, accel->instance_root);
+    struct query q = {.accel = accel,
+                      .pose = accel->flat ? NULL : pose,
+                      .placed = affine_identity(),
+                      .p = {p[0], p[1], p[2]},
+                      .best2 = most2};
+    visit(&q, accel->flat ? accel->meshes[0].root : accel->instance_root);
     return q.best2;
 }
 
