@@ -248,7 +248,7 @@ TEST(hits_save_visits)
     assert_true(report.measured_inner_nodes > 0.3 * report.predicted_inner_nodes);
 }
 
-/* Rays widen the boxes of split triangles by a share of how far away the mesh is, not its origin. */
+/* Rays widen the boxes of split triangles by a share of how far away the mesh is. */
 TEST(split_triangles_are_visited_alike_anywhere)
 {
     whit_accel_report reports[2];
@@ -257,8 +257,8 @@ TEST(split_triangles_are_visited_alike_anywhere)
         struct soup soup = soup_rooms(500);
         for (uint32_t i = 0; i < 9 * soup.count; ++i)
             soup.positions[i] += far ? 0x1p16f : 0.0f;
-        own_world world = world_of_soup(
-            soup, (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .leaf_limit = 1});
+        own_world world =
+            world_of_soup(soup, (whit_accel_params){.build = WHIT_BUILD_SPATIAL, .leaf_limit = 1});
         assert_true(world.accel->clipped);
         reports[far] = report_of(&world, 20000);
     }
