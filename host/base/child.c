@@ -109,8 +109,7 @@ static void confine(const struct child *child, const struct child_limits *limits
 }
 
 /* Runs fn in the sandbox; without it where it cannot be set up and is not required. */
-static int run_inside(const struct child_limits *limits,
-                      int (*fn)(void *user, void *to, child_write write), void *user)
+static int run_inside(const struct child_limits *limits, child_fn fn, void *user)
 {
     bool whole = true;
     /* Without this glibc reads /proc before it gives memory back, which the filter of system calls
@@ -196,8 +195,7 @@ pid_t child_fork(sigset_t *before)
     return pid;
 }
 
-static bool start(struct child *child, const struct child_limits *limits,
-                  int (*fn)(void *user, void *to, child_write write), void *user)
+static bool start(struct child *child, const struct child_limits *limits, child_fn fn, void *user)
 {
     if (!open_channels(child, limits))
         return false;
@@ -325,8 +323,7 @@ static enum child_end take_reply(struct child *child, const struct child_limits 
     return CHILD_DONE;
 }
 
-enum child_end child_run(const struct child_limits *limits,
-                         int (*fn)(void *user, void *to, child_write write), void *user,
+enum child_end child_run(const struct child_limits *limits, child_fn fn, void *user,
                          struct child_reply *reply)
 {
     struct child child;

@@ -45,12 +45,13 @@ struct child_reply {
 /* Writes bytes of the child's reply; false when there is no room for them. */
 typedef bool (*child_write)(void *to, const void *data, size_t size_bytes);
 
+typedef int (*child_fn)(void *user, void *to, child_write write);
+
 /* Forks and runs fn(user, to, write) in the child, in the sandbox (sandbox.h): fn must not touch
    Vulkan, threads or files; its standard output and error go nowhere. Its return value is the
    child's exit code, 0 to 119, or CHILD_EXIT_MEMORY when its memory ran out. A child that wrote
    nothing ends as CHILD_REPLY, with its exit code. */
-enum child_end child_run(const struct child_limits *limits,
-                         int (*fn)(void *user, void *to, child_write write), void *user,
+enum child_end child_run(const struct child_limits *limits, child_fn fn, void *user,
                          struct child_reply *reply);
 void child_reply_free(struct child_reply *reply);
 /* The elapsed time that these limits allow, in seconds; 0: no limit. */

@@ -84,9 +84,8 @@ static whit_result explain(enum child_end end, const struct child_limits *limits
     return WHIT_ERROR_INPUT;
 }
 
-whit_result foreign_run(const whit_log *log, const struct child_limits *limits,
-                        int (*fn)(void *user, void *to, child_write write), void *user,
-                        struct child_reply *reply, char reason[FOREIGN_REASON_BYTES])
+whit_result foreign_run(const whit_log *log, const struct child_limits *limits, child_fn fn,
+                        void *user, struct child_reply *reply, char reason[FOREIGN_REASON_BYTES])
 {
     static atomic_flag warned = ATOMIC_FLAG_INIT;
     enum child_end end = child_run(limits, fn, user, reply);

@@ -25,8 +25,8 @@ enum { FOREIGN_REASON_BYTES = 768 };
    WHIT_ERROR_INPUT, or _MEMORY (no child), _CANCELLED, _USAGE (a sandbox is required and cannot be
    set up). A run without the sandbox is logged as a warning, once in a process. */
 WHIT_CHECK whit_result foreign_run(const whit_log *log, const struct child_limits *limits,
-                                   int (*fn)(void *user, void *to, child_write write), void *user,
-                                   struct child_reply *reply, char reason[FOREIGN_REASON_BYTES]);
+                                   child_fn fn, void *user, struct child_reply *reply,
+                                   char reason[FOREIGN_REASON_BYTES]);
 
 /* The end of a reply, behind its data. */
 struct foreign_answer {

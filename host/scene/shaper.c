@@ -9,12 +9,13 @@ bool shape_positive(double value)
     return value > 0.0 && value <= 1e17;
 }
 
-whit_result shaper_init(struct shaper *shaper, uint64_t vertices, uint64_t triangles)
+whit_result shaper_init(struct shaper *shaper, struct scene_mesh *mesh, uint64_t vertices,
+                        uint64_t triangles)
 {
-    *shaper = (struct shaper){0};
+    *shaper = (struct shaper){.mesh = mesh};
+    *mesh = (struct scene_mesh){0};
     if (vertices > UINT32_MAX / 4 || triangles > UINT32_MAX / 4)
         return WHIT_ERROR_USAGE;
-    struct scene_mesh *mesh = &shaper->mesh;
     mesh->vertex_count = (uint32_t)vertices;
     mesh->triangle_count = (uint32_t)triangles;
     mesh->positions = array_alloc_zeroed((size_t)vertices, 3 * sizeof(float));
@@ -30,7 +31,7 @@ whit_result shaper_init(struct shaper *shaper, uint64_t vertices, uint64_t trian
 
 whit_result shaper_add_colors(struct shaper *shaper)
 {
-    struct scene_mesh *mesh = &shaper->mesh;
+    struct scene_mesh *mesh = shaper->mesh;
     mesh->colors = array_alloc_zeroed(mesh->vertex_count, 4 * sizeof(float));
     if (mesh->colors)
         return WHIT_OK;
@@ -41,7 +42,7 @@ whit_result shaper_add_colors(struct shaper *shaper)
 uint32_t shaper_vertex(struct shaper *shaper, const double position[3], const double normal[3],
                        double u, double v)
 {
-    struct scene_mesh *mesh = &shaper->mesh;
+    struct scene_mesh *mesh = shaper->mesh;
     uint32_t vertex = shaper->vertex++;
     if (shaper->measuring)
         return vertex;
@@ -60,7 +61,7 @@ uint32_t shaper_vertex(struct shaper *shaper, const double position[3], const do
 void shaper_triangle(struct shaper *shaper, uint32_t a, uint32_t b, uint32_t c)
 {
     if (!shaper->measuring) {
-        uint32_t *index = shaper->mesh.indices + shaper->corner;
+        uint32_t *index = shaper->mesh->indices + shaper->corner;
         index[0] = a, index[1] = b, index[2] = c;
     }
     shaper->corner += 3;

@@ -7,14 +7,16 @@
 /* The mesh's arrays have their final size and are filled front to back. A zeroed shaper with
    `measuring` set only counts vertices and corners, to find that size. */
 struct shaper {
-    struct scene_mesh mesh;
+    struct scene_mesh *mesh;
     uint32_t vertex, corner;
     bool measuring;
     float color[3]; /* of the vertices to come, where the mesh has colours */
 };
 
-/* WHIT_ERROR_USAGE for too many vertices or triangles, WHIT_ERROR_MEMORY. */
-WHIT_CHECK whit_result shaper_init(struct shaper *shaper, uint64_t vertices, uint64_t triangles);
+/* Begins *mesh, which is empty afterwards where that fails: WHIT_ERROR_USAGE for too many vertices
+   or triangles, WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result shaper_init(struct shaper *shaper, struct scene_mesh *mesh,
+                                   uint64_t vertices, uint64_t triangles);
 /* Gives the mesh vertex colours. */
 WHIT_CHECK whit_result shaper_add_colors(struct shaper *shaper);
 /* `normal` need not be unit. */

@@ -16,7 +16,7 @@ whit_result shape_box(const double size[3], struct scene_mesh *out)
     struct shaper shaper;
     if (!shape_positive(size[0]) || !shape_positive(size[1]) || !shape_positive(size[2]))
         return WHIT_ERROR_USAGE;
-    whit_result result = shaper_init(&shaper, 24, 12);
+    whit_result result = shaper_init(&shaper, out, 24, 12);
     if (result != WHIT_OK)
         return result;
     for (int face = 0; face < 6; ++face) {
@@ -38,7 +38,6 @@ whit_result shape_box(const double size[3], struct scene_mesh *out)
         }
         shaper_quad(&shaper, corner[0], corner[1], corner[2], corner[3]);
     }
-    *out = shaper.mesh;
     return WHIT_OK;
 }
 
@@ -50,7 +49,7 @@ whit_result shape_plane(double width, double depth, uint32_t steps, double uv_sc
         !isfinite(uv_scale) || fabs(uv_scale) > 1e6)
         return WHIT_ERROR_USAGE;
     uint64_t row = (uint64_t)steps + 1;
-    whit_result result = shaper_init(&shaper, row * row, 2 * (uint64_t)steps * steps);
+    whit_result result = shaper_init(&shaper, out, row * row, 2 * (uint64_t)steps * steps);
     if (result != WHIT_OK)
         return result;
     for (uint32_t j = 0; j <= steps; ++j) {
@@ -61,7 +60,6 @@ whit_result shape_plane(double width, double depth, uint32_t steps, double uv_sc
         }
     }
     shaper_grid(&shaper, 0, steps, steps);
-    *out = shaper.mesh;
     return WHIT_OK;
 }
 
@@ -74,8 +72,8 @@ whit_result shape_sphere(double radius, uint32_t segments, uint32_t rings, struc
         rings > STEPS_MAX)
         return WHIT_ERROR_USAGE;
     uint32_t row = segments + 1;
-    whit_result result =
-        shaper_init(&shaper, (uint64_t)row * (rings + 1), 2 * (uint64_t)segments * (rings - 1));
+    whit_result result = shaper_init(&shaper, out, (uint64_t)row * (rings + 1),
+                                     2 * (uint64_t)segments * (rings - 1));
     if (result != WHIT_OK)
         return result;
     for (uint32_t j = 0; j <= rings; ++j) {
@@ -99,7 +97,6 @@ whit_result shape_sphere(double radius, uint32_t segments, uint32_t rings, struc
                 shaper_triangle(&shaper, a, b + 1, a + 1);
         }
     }
-    *out = shaper.mesh;
     return WHIT_OK;
 }
 
@@ -206,7 +203,7 @@ whit_result shape_icosphere(double radius, uint32_t level, struct scene_mesh *ou
         return result;
     for (uint32_t i = 0; i < level; ++i)
         icosphere_refine(&ico);
-    result = shaper_init(&shaper, ico.point_count, ico.face_count);
+    result = shaper_init(&shaper, out, ico.point_count, ico.face_count);
     if (result != WHIT_OK)
         goto fail;
     for (uint32_t i = 0; i < ico.point_count; ++i) {
@@ -217,7 +214,6 @@ whit_result shape_icosphere(double radius, uint32_t level, struct scene_mesh *ou
     }
     for (uint32_t i = 0; i < ico.face_count; ++i)
         shaper_triangle(&shaper, ico.faces[i][0], ico.faces[i][1], ico.faces[i][2]);
-    *out = shaper.mesh;
 fail:
     icosphere_finish(&ico);
     return result;
@@ -231,7 +227,7 @@ whit_result shape_torus(double radius, double tube, uint32_t segments, uint32_t 
     if (!shape_positive(radius) || !shape_positive(tube) || segments < 3 || sides < 3 ||
         segments > STEPS_MAX || sides > STEPS_MAX)
         return WHIT_ERROR_USAGE;
-    whit_result result = shaper_init(&shaper, (sides + UINT64_C(1)) * (segments + 1),
+    whit_result result = shaper_init(&shaper, out, (sides + UINT64_C(1)) * (segments + 1),
                                      2 * (uint64_t)segments * sides);
     if (result != WHIT_OK)
         return result;
@@ -246,7 +242,6 @@ whit_result shape_torus(double radius, double tube, uint32_t segments, uint32_t 
         }
     }
     shaper_grid(&shaper, 0, segments, sides);
-    *out = shaper.mesh;
     return WHIT_OK;
 }
 
@@ -280,7 +275,7 @@ whit_result shape_cylinder(double radius, double radius_top, double height, uint
         return WHIT_ERROR_USAGE;
     uint64_t caps = cone ? 1 : 2, row = (uint64_t)segments + 1;
     whit_result result =
-        shaper_init(&shaper, 2 * row + caps * (row + 1), (uint64_t)segments * (cone ? 2 : 4));
+        shaper_init(&shaper, out, 2 * row + caps * (row + 1), (uint64_t)segments * (cone ? 2 : 4));
     if (result != WHIT_OK)
         return result;
     for (uint32_t i = 0; i <= segments; ++i) {
@@ -300,7 +295,6 @@ whit_result shape_cylinder(double radius, double radius_top, double height, uint
     add_cap(&shaper, radius, -0.5 * height, -1.0, segments);
     if (!cone)
         add_cap(&shaper, radius_top, 0.5 * height, 1.0, segments);
-    *out = shaper.mesh;
     return WHIT_OK;
 }
 
@@ -345,7 +339,7 @@ whit_result shape_terrain(double size, double height, uint32_t steps, uint32_t s
     if (!shape_positive(size) || !shape_positive(height) || !steps || steps > 4096)
         return WHIT_ERROR_USAGE;
     uint64_t row = (uint64_t)steps + 1;
-    whit_result result = shaper_init(&shaper, row * row, 2 * (uint64_t)steps * steps);
+    whit_result result = shaper_init(&shaper, out, row * row, 2 * (uint64_t)steps * steps);
     if (result != WHIT_OK)
         return result;
     double h = 1.0 / steps;
@@ -362,7 +356,6 @@ whit_result shape_terrain(double size, double height, uint32_t steps, uint32_t s
         }
     }
     shaper_grid(&shaper, 0, steps, steps);
-    *out = shaper.mesh;
     return WHIT_OK;
 }
 

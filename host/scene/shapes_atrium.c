@@ -411,12 +411,11 @@ whit_result shape_atrium(uint32_t bays, uint32_t level, struct scene_mesh *out)
         .shaper.measuring = true, .bays = bays, .level = level, .end = 0.5 * PITCH * bays};
     add_all(&atrium);
     uint64_t vertices = atrium.shaper.vertex, triangles = atrium.shaper.corner / 3;
-    whit_result result = shaper_init(&atrium.shaper, vertices, triangles);
+    whit_result result = shaper_init(&atrium.shaper, out, vertices, triangles);
     if (result == WHIT_OK)
         result = shaper_add_colors(&atrium.shaper);
     if (result != WHIT_OK)
         return result;
     add_all(&atrium);
-    *out = atrium.shaper.mesh;
     return WHIT_OK;
 }

@@ -66,7 +66,7 @@ whit_result shape_strands(double size, double length, double width, uint32_t cou
     if (!shape_positive(size) || !shape_positive(length) || !shape_positive(width) ||
         !(width <= length) || !count || count > STRANDS_MAX)
         return WHIT_ERROR_USAGE;
-    whit_result result = shaper_init(&shaper, 12 * (uint64_t)count, 4 * (uint64_t)count);
+    whit_result result = shaper_init(&shaper, out, 12 * (uint64_t)count, 4 * (uint64_t)count);
     if (result != WHIT_OK)
         return result;
     uint32_t state = seed;
@@ -77,6 +77,5 @@ whit_result shape_strands(double size, double length, double width, uint32_t cou
         random_direction(&state, dir);
         add_needle(&shaper, middle, dir, length, width);
     }
-    *out = shaper.mesh;
     return WHIT_OK;
 }

@@ -126,25 +126,6 @@ TEST(one_colour_stays)
     }
 }
 
-TEST(light_is_averaged_and_bytes_are_not)
-{
-    const uint8_t checker[16] = {255, 255, 255, 255, 0,   0,   0,   255,
-                                 0,   0,   0,   255, 255, 255, 255, 255};
-    own_memory uint8_t *light = mipmap_make(checker, 2, 2, MIPMAP_SRGB);
-    own_memory uint8_t *bytes = mipmap_make(checker, 2, 2, MIPMAP_LINEAR);
-    assert_true(light && bytes);
-    assert_int_equal(light[0], 188); /* half the light */
-    assert_int_equal(bytes[0], 127);
-}
-
-TEST(what_covers_nothing_tints_nothing)
-{
-    const uint8_t leaf[8] = {0, 200, 0, 255, 255, 0, 0, 0};
-    own_memory uint8_t *cover = mipmap_make(leaf, 2, 1, MIPMAP_COVER);
-    assert_non_null(cover);
-    assert_memory_equal(cover, ((const uint8_t[4]){0, 200, 0, 127}), 4);
-}
-
 TEST(slots_are_averaged_as_what_they_are)
 {
     struct scene_material m = material_plain("m");

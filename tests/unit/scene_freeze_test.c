@@ -356,21 +356,3 @@ TEST(faint_glow_lights_nothing)
     assert_int_equal(scene->light_count, 1);
     assert_int_equal(scene->lights[0].kind, WHIT_LIGHT_DIRECTIONAL);
 }
-
-static uint64_t hash_of(float diffuse, float move)
-{
-    own_scene *scene = scene_of(mesh_box(2, 2, 2));
-    struct scene_material material = material_grey("m");
-    material.diffuse[0] = diffuse;
-    scene_put_material(scene, material);
-    scene->meshes[0].positions[0] += move;
-    scene_ready(scene);
-    return scene->hash;
-}
-
-TEST(hash_follows_content)
-{
-    assert_true(hash_of(0.5f, 0.0f) == hash_of(0.5f, 0.0f));
-    assert_true(hash_of(0.5f, 0.0f) != hash_of(0.6f, 0.0f));
-    assert_true(hash_of(0.5f, 0.0f) != hash_of(0.5f, 0.125f));
-}
