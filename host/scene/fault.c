@@ -35,7 +35,8 @@ static bool move_vertex(struct scene *scene, uint64_t *random, double amount)
     double3_unit(way);
     for (int i = 0; i < 3; ++i)
         place[i] = (float)((double)place[i] + amount * side * way[i]);
-    return freeze_clean_mesh(scene, index) == WHIT_OK;
+    scene->lacks_memory |= freeze_clean_mesh(scene, index) != WHIT_OK; /* its only error */
+    return true;
 }
 
 /* Changes the index of refraction of a material that lets light through or has Fresnel reflection.

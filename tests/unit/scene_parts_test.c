@@ -3,6 +3,7 @@
 #include <glob.h>
 
 #include "../scenes.h"
+#include "../wrapped.h"
 #include "base/array.h"
 #include "load/load.h"
 #include "scene/change.h"
@@ -414,6 +415,32 @@ TEST(a_fault_alters_its_parts_alone)
     struct scene *made;
     assert_int_equal(scene_fault(NULL, &before.side, &none, 1, &made), WHIT_ERROR_USAGE);
     assert_null(made);
+}
+
+static uint32_t calls, fails_at; /* the call of array_alloc that gives nothing; 0: none */
+
+WRAPPED(void *, array_alloc, size_t count, size_t element_bytes)
+{
+    return ++calls == fails_at ? NULL : __real_array_alloc(count, element_bytes);
+}
+
+/* Wherever memory runs out, that is said, and not that the scene has nothing to change. */
+TEST(a_fault_without_memory_is_no_other_error)
+{
+    const whit_fault fault = {WHIT_FAULT_VERTEX, 1, 1e-3};
+    whit_result result = WHIT_ERROR_MEMORY;
+    own_loaded before;
+    take(&before, small_scene(&usual));
+    for (fails_at = 1; result == WHIT_ERROR_MEMORY; ++fails_at) {
+        struct scene *made = NULL;
+        calls = 0;
+        result = scene_fault(NULL, &before.side, &fault, 1, &made);
+        assert_true((made != NULL) == (result == WHIT_OK));
+        scene_destroy(made);
+    }
+    assert_int_equal(result, WHIT_OK);
+    assert_true(fails_at > 5);
+    fails_at = 0;
 }
 
 TEST(a_fault_of_light_finds_one_that_is_not_black)
