@@ -19,9 +19,11 @@ static bool put(struct scene *scene, whit_result made, struct scene_mesh *mesh,
     for (uint32_t i = 0; i < mesh->triangle_count; ++i)
         mesh->materials[i] = index;
     mesh->name = string_copy("small");
-    struct scene_instance instance = {.name = string_copy("small"), .node = SCENE_NONE};
-    instance.mesh = scene_add_mesh(scene, *mesh);
-    return instance.mesh != SCENE_NONE && scene_add_instance(scene, instance) != SCENE_NONE;
+    struct scene_instance instance = {.mesh = scene_add_mesh(scene, *mesh), .node = SCENE_NONE};
+    if (instance.mesh == SCENE_NONE)
+        return false;
+    instance.name = string_copy("small");
+    return scene_add_instance(scene, instance) != SCENE_NONE;
 }
 
 static struct scene_material material_of(float red, float green, float blue)
@@ -67,16 +69,18 @@ static struct scene_material glass(void)
     return material;
 }
 
-struct scene *scene_small(const whit_log *log)
+static bool put_lamp(struct scene *scene)
 {
-    struct scene *scene = scene_create(log, "whit's small scene");
-    if (!scene)
-        return NULL;
     const struct scene_light light = {.name = string_copy("small"),
                                       .kind = WHIT_LIGHT_POINT,
                                       .node = SCENE_NONE,
                                       .position = {-3.0, 5.0, 3.0},
                                       .color = {1.0f, 1.0f, 1.0f}};
+    return scene_add_light(scene, light) != SCENE_NONE;
+}
+
+static bool put_camera(struct scene *scene)
+{
     const struct scene_camera camera = {.name = string_copy("small"),
                                         .kind = WHIT_CAMERA_PERSPECTIVE,
                                         .node = SCENE_NONE,
@@ -84,10 +88,17 @@ struct scene *scene_small(const whit_log *log)
                                         .target = {0.0, 0.6, 0.0},
                                         .up = {0.0, 1.0, 0.0},
                                         .fov_y = 0.7f};
+    return scene_add_camera(scene, camera) != SCENE_NONE;
+}
+
+struct scene *scene_small(const whit_log *log)
+{
+    struct scene *scene = scene_create(log, "whit's small scene");
+    if (!scene)
+        return NULL;
     bool fine = put_floor(scene) && put_mirror(scene) && put_ball(scene, -0.9, glass()) &&
-                put_ball(scene, 0.9, material_of(0.8f, 0.3f, 0.2f)) &&
-                scene_add_light(scene, light) != SCENE_NONE &&
-                scene_add_camera(scene, camera) != SCENE_NONE && scene_freeze(scene) == WHIT_OK;
+                put_ball(scene, 0.9, material_of(0.8f, 0.3f, 0.2f)) && put_lamp(scene) &&
+                put_camera(scene) && scene_freeze(scene) == WHIT_OK;
     if (fine)
         return scene;
     scene_destroy(scene);

@@ -10,6 +10,7 @@
 #include "scene/fault.h"
 #include "scene/fields.h"
 #include "scene/hash.h"
+#include "scene/small.h"
 #include "unit.h"
 
 struct loaded {
@@ -417,32 +418,6 @@ TEST(a_fault_alters_its_parts_alone)
     assert_null(made);
 }
 
-static uint32_t calls, fails_at; /* the call of array_alloc that gives nothing; 0: none */
-
-WRAPPED(void *, array_alloc, size_t count, size_t element_bytes)
-{
-    return ++calls == fails_at ? NULL : __real_array_alloc(count, element_bytes);
-}
-
-/* Wherever memory runs out, that is said, and not that the scene has nothing to change. */
-TEST(a_fault_without_memory_is_no_other_error)
-{
-    const whit_fault fault = {WHIT_FAULT_VERTEX, 1, 1e-3};
-    whit_result result = WHIT_ERROR_MEMORY;
-    own_loaded before;
-    take(&before, small_scene(&usual));
-    for (fails_at = 1; result == WHIT_ERROR_MEMORY; ++fails_at) {
-        struct scene *made = NULL;
-        calls = 0;
-        result = scene_fault(NULL, &before.side, &fault, 1, &made);
-        assert_true((made != NULL) == (result == WHIT_OK));
-        scene_destroy(made);
-    }
-    assert_int_equal(result, WHIT_OK);
-    assert_true(fails_at > 5);
-    fails_at = 0;
-}
-
 TEST(a_fault_of_light_finds_one_that_is_not_black)
 {
     struct scene *scene = scene_begin(NULL, "dark");
@@ -457,4 +432,81 @@ TEST(a_fault_of_light_finds_one_that_is_not_black)
         own_scene *changed = made;
         assert_true(changed->lights[2].color[0] == 1.5f);
     }
+}
+
+/* ---- Memory ---- */
+
+static uint32_t calls, fails_at; /* counts calls for memory, of which this one gives nothing */
+static int64_t live;             /* blocks that were not given back */
+static bool counts;
+
+static void *took(void *block)
+{
+    live += counts && block;
+    return block;
+}
+
+WRAPPED(void *, malloc, size_t bytes)
+{
+    return counts && ++calls == fails_at ? NULL : took(__real_malloc(bytes));
+}
+
+WRAPPED(void *, calloc, size_t count, size_t bytes)
+{
+    return counts && ++calls == fails_at ? NULL : took(__real_calloc(count, bytes));
+}
+
+WRAPPED(void *, realloc, void *block, size_t bytes)
+{
+    if (counts && ++calls == fails_at)
+        return NULL;
+    live -= counts && block;
+    return took(__real_realloc(block, bytes));
+}
+
+WRAPPED(void, free, void *block)
+{
+    live -= counts && block;
+    __real_free(block);
+}
+
+/* A scene of half of the parts of two others, and one with a fault. */
+static whit_result mix_and_fault(const struct scene *a, const struct scene *b)
+{
+    const whit_fault fault = {WHIT_FAULT_VERTEX, 1, 1e-3};
+    struct scene_parts was = {0}, is = {0};
+    struct scene *mixed = NULL, *faulty = NULL;
+    bool back[16] = {true, false, true, true};
+    whit_result result = a && b ? scene_parts_init(a, &was) : WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK)
+        result = scene_parts_init(b, &is);
+    const struct scene_side before = {a, &was}, after = {b, &is};
+    assert_true(was.count <= sizeof back);
+    if (result == WHIT_OK)
+        result = scene_mix(NULL, &before, &after, back, &mixed);
+    if (result == WHIT_OK)
+        result = scene_fault(NULL, &before, &fault, 1, &faulty);
+    assert_true((faulty != NULL) == (result == WHIT_OK));
+    scene_destroy(mixed);
+    scene_destroy(faulty);
+    scene_parts_finish(&was);
+    scene_parts_finish(&is);
+    return result;
+}
+
+TEST(what_was_made_before_memory_ran_out_is_given_back)
+{
+    bool failed = true;
+    for (fails_at = 1; failed; ++fails_at) {
+        calls = 0, live = 0, counts = true;
+        struct scene *a = scene_small(NULL), *b = scene_small(NULL);
+        whit_result result = mix_and_fault(a, b);
+        scene_destroy(a);
+        scene_destroy(b);
+        counts = false;
+        failed = calls >= fails_at;
+        assert_int_equal(live, 0);
+        assert_true(result == WHIT_OK || (result == WHIT_ERROR_MEMORY && failed));
+    }
+    assert_true(fails_at > 200);
 }
