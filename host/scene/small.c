@@ -94,12 +94,12 @@ static bool put_camera(struct scene *scene)
 struct scene *scene_small(const whit_log *log)
 {
     struct scene *scene = scene_create(log, "whit's small scene");
-    if (!scene)
-        return NULL;
-    bool fine = put_floor(scene) && put_mirror(scene) && put_ball(scene, -0.9, glass()) &&
+    bool made = scene && put_floor(scene) && put_mirror(scene) && put_ball(scene, -0.9, glass()) &&
                 put_ball(scene, 0.9, material_of(0.8f, 0.3f, 0.2f)) && put_lamp(scene) &&
-                put_camera(scene) && scene_freeze(scene) == WHIT_OK;
-    if (fine)
+                put_camera(scene);
+    if (!made)
+        log_error(log, "out of memory for whit's small scene");
+    if (made && scene_freeze(scene) == WHIT_OK)
         return scene;
     scene_destroy(scene);
     return NULL;

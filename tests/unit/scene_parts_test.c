@@ -6,6 +6,7 @@
 #include "../wrapped.h"
 #include "base/array.h"
 #include "load/load.h"
+#include "messages_fixture.h"
 #include "scene/change.h"
 #include "scene/fault.h"
 #include "scene/fields.h"
@@ -499,7 +500,9 @@ TEST(what_was_made_before_memory_ran_out_is_given_back)
     bool failed = true;
     for (fails_at = 1; failed; ++fails_at) {
         calls = 0, live = 0, counts = true;
-        struct scene *a = scene_small(NULL), *b = scene_small(NULL);
+        messages = (struct messages){0};
+        struct scene *a = scene_small(&warnings_log), *b = scene_small(&warnings_log);
+        assert_int_equal(messages.errors, !a || !b);
         whit_result result = mix_and_fault(a, b);
         scene_destroy(a);
         scene_destroy(b);
