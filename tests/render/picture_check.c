@@ -168,38 +168,42 @@ static bool same_ids(const struct drawn *a, const struct drawn *b)
     return memcmp(x, y, sizeof *x * 2 * WIDTH * HEIGHT) == 0;
 }
 
+/* Over trees of its own where `trees` is not NULL. */
 static void check_same(const struct subject *subject, const struct drawn *first,
-                       const whit_renderer_params *params, const char *way)
+                       const whit_accel_params *trees, const whit_renderer_params *params,
+                       const char *way)
 {
     char what[96];
-    struct drawn other;
-    if (draw(subject, params, &other)) {
+    struct drawn other = {.color = NULL};
+    struct subject own = *subject;
+    bool built = !trees || whit_accel_create(subject->scene, trees, &own.accel) == WHIT_OK;
+    if (trees)
+        check(built, "other trees are built");
+    if (built && draw(&own, params, &other)) {
         snprintf(what, sizeof what, "%s gives the same picture", way);
         check(same_colors(first, &other), what);
         snprintf(what, sizeof what, "%s gives the same identities", way);
         check(same_ids(first, &other), what);
     }
     drawn_finish(&other);
+    if (built && trees)
+        whit_accel_destroy(own.accel);
 }
 
-/* On a device and over trees of their own; drivers read the environment when a device is made. */
+/* On a device of its own too; drivers read the environment when a device is made. */
 static void check_apart(const struct subject *subject, const struct drawn *first,
                         const whit_accel_params *trees, const whit_renderer_params *params,
                         const char *way)
 {
     struct subject other = *subject;
-    bool made = whit_accel_create(subject->scene, trees, &other.accel) == WHIT_OK &&
-                whit_device_create(NULL, &messages, &other.device) == WHIT_OK;
+    bool made = whit_device_create(NULL, &messages, &other.device) == WHIT_OK;
     check(made, "another device comes up");
-    if (made) {
-        check_same(&other, first, params, way);
-        check(whit_device_validation_messages(other.device) == 0,
-              "the validation layers had nothing to say");
-    }
-    if (other.device != subject->device)
-        whit_device_destroy(other.device);
-    if (other.accel != subject->accel)
-        whit_accel_destroy(other.accel);
+    if (!made)
+        return;
+    check_same(&other, first, trees, params, way);
+    check(whit_device_validation_messages(other.device) == 0,
+          "the validation layers had nothing to say");
+    whit_device_destroy(other.device);
 }
 
 /* ---- The kernel with every effect ---- */
@@ -266,33 +270,21 @@ static void check_storage(const struct subject *subject, const struct drawn *fir
                                           .effects_removed = removed};
     struct drawn small;
     if (full)
-        check_same(subject, first, &storage, "--load-path storage");
+        check_same(subject, first, NULL, &storage, "--load-path storage");
     else if (draw(subject, &texel, &small))
-        check_same(subject, &small, &storage, "--load-path storage, of camera rays,");
+        check_same(subject, &small, NULL, &storage, "--load-path storage, of camera rays,");
     if (!full)
         drawn_finish(&small);
 }
 
-static void check_median(const struct subject *subject, const struct drawn *first)
-{
-    const whit_accel_params median = {.build = WHIT_BUILD_MEDIAN};
-    const whit_renderer_params usual = {.tile_size = 0};
-    struct subject other = *subject;
-    bool made = whit_accel_create(subject->scene, &median, &other.accel) == WHIT_OK;
-    check(made, "other trees are built");
-    if (made)
-        check_same(&other, first, &usual, "--build median");
-    if (made)
-        whit_accel_destroy(other.accel);
-}
-
 static void check_ways(const struct subject *subject, const struct drawn *first)
 {
+    const whit_accel_params median = {.build = WHIT_BUILD_MEDIAN};
     const whit_renderer_params tile = {.tile_size = 512, .packets = WHIT_PACKETS_ON},
-                               texel = {.load_path = WHIT_LOAD_TEXEL};
-    check_same(subject, first, &tile, "--tile-size 512 --packets on");
-    check_same(subject, first, &texel, "--load-path texel");
-    check_median(subject, first);
+                               texel = {.load_path = WHIT_LOAD_TEXEL}, usual = {.tile_size = 0};
+    check_same(subject, first, NULL, &tile, "--tile-size 512 --packets on");
+    check_same(subject, first, NULL, &texel, "--load-path texel");
+    check_same(subject, first, &median, &usual, "--build median");
 }
 
 /* A number by which checks take turns: it depends on the scene, and changes with each commit
@@ -401,7 +393,7 @@ static void check_stages(const struct subject *subject, whit_numerics level, boo
             params = ways[i].params;
             params.numerics = level;
             if (level != WHIT_NUMERICS_FAST || params.packets != WHIT_PACKETS_ON)
-                check_same(subject, &first, &params, ways[i].name);
+                check_same(subject, &first, NULL, &params, ways[i].name);
         }
     }
     drawn_finish(&first);
