@@ -146,8 +146,6 @@ whit_result device_create(const whit_log *log, const whit_device_params *params,
     /* Loading drivers takes locks that a child forked meanwhile would find held for ever. */
     child_hold_forks();
     whit_result result = instance_create(device);
-    if (result == WHIT_OK)
-        result = instance_make_surface(device);
     device->surface_source = NULL;
     if (result == WHIT_OK)
         result = instance_select(device, params ? params->selector : NULL);

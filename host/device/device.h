@@ -22,7 +22,6 @@ struct commands;
 struct device_limits {
     uint64_t max_texel_elements; /* of one texel buffer view */
     uint64_t max_allocation_bytes;
-    uint32_t max_group_count_x;
     /* Whether kernels may request these of 32-bit floats (float controls): rounding to nearest;
        NaN, infinity and the sign of 0 kept; denormals kept. */
     bool asked_nearest, asked_special, asked_denormals;

@@ -214,6 +214,18 @@ fail:
     return result;
 }
 
+static whit_result make_surface(struct device *device)
+{
+    const struct device_surface *source = device->surface_source;
+    if (!source)
+        return WHIT_OK;
+    VkResult vk = VK_SUCCESS;
+    if (device_may_call(device, "vkCreateSurface", &vk))
+        vk = (VkResult)LAYERS_BESIDE(
+            source->create(source->user, device->instance, &device->surface));
+    return device_check(device, vk, "the window's surface", __FILE__, __LINE__);
+}
+
 whit_result instance_create(struct device *device)
 {
     static const char *const names[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
@@ -233,23 +245,10 @@ whit_result instance_create(struct device *device)
                    "it lacks VK_EXT_validation_features or VK_EXT_debug_utils", WHIT_ERROR_DEVICE);
     if (result == WHIT_OK)
         result = make_instance(device, found, names, 2, features != 0);
-    if (result != WHIT_OK)
-        return result;
-
     device->debug_utils = (found & 1u) != 0;
-    return device->validation ? make_messenger(device) : WHIT_OK;
-}
-
-whit_result instance_make_surface(struct device *device)
-{
-    const struct device_surface *source = device->surface_source;
-    if (!source)
-        return WHIT_OK;
-    VkResult vk = VK_SUCCESS;
-    if (device_may_call(device, "vkCreateSurface", &vk))
-        vk = (VkResult)LAYERS_BESIDE(
-            source->create(source->user, device->instance, &device->surface));
-    return device_check(device, vk, "the window's surface", __FILE__, __LINE__);
+    if (result == WHIT_OK && device->validation)
+        result = make_messenger(device);
+    return result == WHIT_OK ? make_surface(device) : result;
 }
 
 void instance_destroy(struct device *device)
@@ -360,7 +359,6 @@ static void fill_details(VkPhysicalDevice physical, whit_device_info *info,
         *limits = (struct device_limits){
             .max_texel_elements = properties.properties.limits.maxTexelBufferElements,
             .max_allocation_bytes = v11.maxMemoryAllocationSize,
-            .max_group_count_x = properties.properties.limits.maxComputeWorkGroupCount[0],
             .asked_nearest = v12.shaderRoundingModeRTEFloat32,
             .asked_special = v12.shaderSignedZeroInfNanPreserveFloat32,
             .asked_denormals = v12.shaderDenormPreserveFloat32,

@@ -4,11 +4,9 @@
 
 #include "device/vulkan.h"
 
-/* instance_create and instance_destroy need no more of `device` than log, fault and validation; all
-   else may be zero. */
+/* Also sets `surface`, if one is asked for. instance_create and instance_destroy need no more of
+   `device` than log, fault and validation; all else may be zero. */
 whit_result instance_create(struct device *device);
-/* Sets `surface`, if one is asked for. Call it between instance_create and instance_select. */
-whit_result instance_make_surface(struct device *device);
 void instance_destroy(struct device *device);
 /* Sets physical, properties, memory and info. */
 whit_result instance_select(struct device *device, const char *selector);

@@ -8,17 +8,6 @@
 
 enum { COST_WORDS = sizeof(struct gpu_cost) / sizeof(uint32_t) };
 
-whit_result costs_create(struct target *target)
-{
-    struct renderer *renderer = target->renderer;
-    struct pixel_buffers *p = &target->buffers;
-    if (!renderer->params.count)
-        return WHIT_OK;
-    uint64_t bytes = (uint64_t)p->chunk_slots * RAY_KIND_COUNT * sizeof(struct gpu_cost);
-    renderer->scene_buffers.bytes += bytes;
-    return buffer_create(renderer->device, bytes, BUFFER_STORAGE | BUFFER_HOST, "costs", &p->costs);
-}
-
 void costs_clear(struct renderer *renderer)
 {
     for (uint32_t kind = 0; kind < RAY_KIND_COUNT; ++kind)

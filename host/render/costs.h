@@ -4,7 +4,6 @@
 
 #include "render/renderer.h"
 
-WHIT_CHECK whit_result costs_create(struct target *target);
 void costs_clear(struct renderer *renderer);
 /* Adds up what the kernels counted for one sample of `chunk`, which was just drawn. Call it before
    the next chunk, which counts in the same slots. */

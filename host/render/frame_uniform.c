@@ -61,30 +61,15 @@ whit_result frame_fill(struct renderer *renderer)
     return media_frame(&renderer->log, renderer->accel, &renderer->pose, &renderer->bodies, frame);
 }
 
-/* Laid out as struct FrameBuffer of shaders/bind/shading.glsl. */
-struct frame_words {
-    struct gpu_frame frame;
-    float sliders[SLIDERS_MAX];
-};
-
-static struct frame_words make_words(const struct renderer *renderer)
+whit_result frame_write(struct renderer *renderer)
 {
-    struct frame_words words = {.frame = renderer->frame};
+    struct { /* laid out as struct FrameBuffer of shaders/bind/shading.glsl */
+        struct gpu_frame frame;
+        float sliders[SLIDERS_MAX];
+    } words = {.frame = renderer->frame};
     memcpy(words.sliders, renderer->sliders, sizeof words.sliders);
-    return words;
-}
-
-whit_result frame_create(struct renderer *renderer)
-{
-    const struct frame_words words = make_words(renderer);
     return upload_words(renderer, &words, sizeof words, BUFFER_STORAGE, "frame",
                         &renderer->scene_buffers.frame);
-}
-
-whit_result frame_write(const struct renderer *renderer)
-{
-    const struct frame_words words = make_words(renderer);
-    return buffer_write(renderer->scene_buffers.frame, 0, &words, sizeof words);
 }
 
 whit_result frame_upload(struct renderer *renderer)

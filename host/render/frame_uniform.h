@@ -7,10 +7,9 @@
 
 /* Fills in renderer->frame, but for the row numbers, which upload.c sets. */
 WHIT_CHECK whit_result frame_fill(struct renderer *renderer);
-/* Creates the buffer of the frame record and the slider values behind it. */
-WHIT_CHECK whit_result frame_create(struct renderer *renderer);
-/* Writes record and slider values to the device, as they are. */
-WHIT_CHECK whit_result frame_write(const struct renderer *renderer);
+/* Writes record and slider values to the device, as they are, to a buffer that the first call
+   makes. */
+WHIT_CHECK whit_result frame_write(struct renderer *renderer);
 /* frame_fill, then frame_write. */
 WHIT_CHECK whit_result frame_upload(struct renderer *renderer);
 

@@ -19,12 +19,6 @@ struct tile_hits {
     uint32_t capacity, first, last;
 };
 
-static void tile_hits_finish(struct tile_hits *hits)
-{
-    free(hits->list);
-    free(hits->rows);
-}
-
 /* Reads the used items of array number `index`, of several arrays of `capacity` items in a
    buffer. */
 static whit_result read_used(struct buffer *buffer, const struct tile_hits *hits, uint64_t index,
@@ -106,7 +100,8 @@ whit_result material_shares_add(struct target *target, const struct gpu_generati
                             material_of(target, &hits, list[end - 1 - firsts[1] - i])];
         }
     }
-    tile_hits_finish(&hits);
+    free(hits.list);
+    free(hits.rows);
     return result;
 }
 

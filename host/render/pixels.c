@@ -1,7 +1,6 @@
 /* The buffers of pixels: for as many rows and slots as the device holds at once. */
 #include "render/pixels.h"
 #include "device/buffer.h"
-#include "render/costs.h"
 #include "render/hooks.h"
 #include "render/material_shares.h"
 #include "render/queues.h"
@@ -98,6 +97,9 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
         {&p->distances, renderer->views.count && !target->probed ? pixels * 4 : 0,
          BUFFER_STORAGE | BUFFER_HOST, "distances"},
         {&p->status, 16, BUFFER_STORAGE | BUFFER_HOST, "status"},
+        {&p->costs,
+         renderer->params.count ? p->chunk_slots * RAY_KIND_COUNT * sizeof(struct gpu_cost) : 0,
+         BUFFER_STORAGE | BUFFER_HOST, "costs"},
         {&p->listed, lists ? pixels * 4 : 0, BUFFER_STORAGE | BUFFER_HOST, "listed pixels"},
     };
     whit_result result =
@@ -106,8 +108,6 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
         result = hooks_clear_status(target);
     if (result == WHIT_OK)
         result = queues_create(target);
-    if (result == WHIT_OK)
-        result = costs_create(target);
     p->bytes = renderer->scene_buffers.bytes - before;
     return result;
 }

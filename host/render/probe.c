@@ -30,15 +30,15 @@ struct record_list {
 
 static whit_result create_buffers(struct target *probe)
 {
-    uint64_t bytes =
-        sizeof(struct gpu_probe) + 2 * (uint64_t)PROBE_RAYS_MAX * sizeof(struct gpu_probe_ray);
-    whit_result result = WHIT_OK;
-    if (!probe->records)
-        result = buffer_create(probe->renderer->device, bytes, BUFFER_STORAGE | BUFFER_HOST,
-                               "probed rays", &probe->records);
-    if (result == WHIT_OK && !probe->dbg && hooks_dbg_count(probe))
-        result = buffer_create(probe->renderer->device, DBG_BYTES, BUFFER_STORAGE | BUFFER_HOST,
-                               "values of dbg(x)", &probe->dbg);
+    const struct buffer_request all[] = {
+        {&probe->records,
+         sizeof(struct gpu_probe) + 2 * (uint64_t)PROBE_RAYS_MAX * sizeof(struct gpu_probe_ray),
+         BUFFER_STORAGE | BUFFER_HOST, "probed rays"},
+        {&probe->dbg, hooks_dbg_count(probe) ? DBG_BYTES : 0, BUFFER_STORAGE | BUFFER_HOST,
+         "values of dbg(x)"},
+    };
+    uint64_t bytes = 0;
+    whit_result result = buffer_create_all(probe->renderer->device, all, 2, &bytes);
     if (result == WHIT_OK && !probe->buffers.pixels)
         result = pixels_create(probe, 8, TILE_MIN);
     if (result != WHIT_OK)

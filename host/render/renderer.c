@@ -41,9 +41,7 @@ static whit_result create_parts(struct renderer *renderer)
     if (result == WHIT_OK)
         result = upload_scene(renderer);
     if (result == WHIT_OK)
-        result = frame_fill(renderer);
-    if (result == WHIT_OK)
-        result = frame_create(renderer);
+        result = frame_upload(renderer);
     renderer->picture.stats.upload_ms = clock_ms() - start_ms;
     if (result == WHIT_OK)
         result = commands_create(renderer->device, "render", &renderer->commands);

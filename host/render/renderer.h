@@ -140,10 +140,11 @@ struct stages {
 struct trace_state {
     struct buffer *rays, *hits, *costs;
     struct buffer *deferred; /* rays left to a second dispatch; NULL: there are never any */
-    struct pass singles[2];  /* kernels for single rays; index: 0 closest hit, 1 any hit */
-    struct pass beams[2];    /* as `singles`, for packets of rays that start at one point */
-    uint32_t capacity;       /* rays that the buffers hold */
-    uint64_t together;       /* rays of the last batch that were traced in packets */
+    /* [0]: kernels for single rays, [1]: for packets of rays that start at one point; of both [0]
+       for the closest hit, [1] for any hit. */
+    struct pass passes[2][2];
+    uint32_t capacity; /* rays that the buffers hold */
+    uint64_t together; /* rays of the last batch that were traced in packets */
     double device_ms;
     uint32_t deferred_count; /* rays of the last batch that floats left open */
 };
@@ -278,6 +279,7 @@ WHIT_CHECK whit_result renderer_compile(struct renderer *renderer);
 WHIT_CHECK whit_result retarget_pixels(struct renderer *renderer);
 /* Forgets the figures of the last picture, and keeps what was measured before it. */
 void stats_clear(struct target *target);
+/* Call it after passes_finish. */
 void trace_finish(struct trace_state *trace);
 
 #endif

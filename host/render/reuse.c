@@ -82,18 +82,10 @@ bool reuse_outlives(const struct renderer *renderer)
            !steps_are_wanted(renderer);
 }
 
-static void dispatch_post(struct renderer *renderer, struct gpu_chunk *chunk)
+static whit_result draw_post(struct renderer *renderer)
 {
     const struct stages *stages = &renderer->picture.stages;
     const struct pass *pass = &stages->set.passes[stages->set.of[STAGE_POST]];
-    commands_bind(renderer->commands, pass->pipeline, pass->set);
-    render_push_chunk(renderer, chunk);
-    commands_dispatch(renderer->commands,
-                      (render_groups(chunk) + pass->rays_each - 1) / pass->rays_each, 1, 1);
-}
-
-static whit_result draw_post(struct renderer *renderer)
-{
     const struct lattice lattice = lattice_whole(renderer);
     uint32_t across = pixels_blocks_across(lattice.width);
     uint32_t end = pixels_blocks_across(lattice.height) * across;
@@ -110,10 +102,13 @@ static whit_result draw_post(struct renderer *renderer)
         return result;
     commands_fill(renderer->commands, renderer->picture.buffers.status, 0, 4, 0);
     commands_barrier(renderer->commands);
+    commands_bind(renderer->commands, pass->pipeline, pass->set);
     for (; chunk.first_block < end; chunk.first_block += chunk.block_count) {
         uint32_t left = end - chunk.first_block;
         chunk.block_count = left < BLOCKS_AT_ONCE ? left : BLOCKS_AT_ONCE;
-        dispatch_post(renderer, &chunk);
+        render_push_chunk(renderer, &chunk);
+        commands_dispatch(renderer->commands,
+                          (render_groups(&chunk) + pass->rays_each - 1) / pass->rays_each, 1, 1);
     }
     return render_finish_submission(&renderer->picture);
 }

@@ -25,10 +25,6 @@ static const double TRACE_TARGET_MS = 150.0;
 
 void trace_finish(struct trace_state *trace)
 {
-    for (int any = 0; any < 2; ++any) {
-        pass_finish(&trace->singles[any]);
-        pass_finish(&trace->beams[any]);
-    }
     buffer_destroy(trace->rays);
     buffer_destroy(trace->hits);
     buffer_destroy(trace->costs);
@@ -56,7 +52,7 @@ static uint32_t choose_capacity(uint32_t max_rays)
 
 static whit_result prepare_pass(struct renderer *renderer, bool any, bool beams)
 {
-    struct pass *pass = beams ? &renderer->trace.beams[any] : &renderer->trace.singles[any];
+    struct pass *pass = &renderer->trace.passes[beams][any];
     return pass->pipeline ? WHIT_OK : variant_create_trace(renderer, any, beams, pass);
 }
 
@@ -93,8 +89,8 @@ static whit_result prepare(struct renderer *renderer, bool any, bool beams)
 static whit_result dispatch(struct renderer *renderer, bool any, bool beams,
                             const struct gpu_batch *batch)
 {
-    const struct pass *singles = &renderer->trace.singles[any];
-    const struct pass *pass = beams ? &renderer->trace.beams[any] : singles;
+    const struct pass *singles = &renderer->trace.passes[false][any];
+    const struct pass *pass = &renderer->trace.passes[beams][any];
     uint32_t each = RENDER_GROUP_SIZE * pass->rays_each;
     whit_result result = commands_begin(renderer->commands);
     if (result != WHIT_OK)
@@ -133,7 +129,7 @@ static whit_result trace_piece(struct renderer *renderer, bool any, bool *beams,
     struct gpu_batch batch = {.ray_count = count, .root = renderer->frame.root};
     if (accel->instance_count == 0)
         batch.root = BVH_EMPTY_REF;
-    *beams = *beams && accel->instance_count > 0 && renderer->trace.beams[any].pipeline;
+    *beams = *beams && accel->instance_count > 0 && renderer->trace.passes[true][any].pipeline;
     if (!*beams)
         return dispatch(renderer, any, false, &batch);
     batch.root8 = accel->bvh8.mesh_roots[accel->flat ? 0 : renderer->scene->instances[0].mesh];

@@ -615,10 +615,8 @@ void passes_unbind(struct renderer *renderer)
 {
     stages_unbind(&renderer->picture.stages);
     stages_unbind(&renderer->probe.stages);
-    for (int any = 0; any < 2; ++any) {
-        pass_finish(&renderer->trace.singles[any]);
-        pass_finish(&renderer->trace.beams[any]);
-    }
+    for (int i = 0; i < 4; ++i)
+        pass_finish(&renderer->trace.passes[i / 2][i % 2]);
 }
 
 void passes_finish(struct renderer *renderer)
