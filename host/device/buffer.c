@@ -164,7 +164,7 @@ static whit_result allocate(struct buffer *buffer)
     VK_TRY(device, vkCreateBuffer(device->vk, &info, NULL, &buffer->vk));
 
     VkMemoryRequirements needs;
-    vkGetBufferMemoryRequirements(device->vk, buffer->vk, &needs);
+    LAYERS_BESIDE(vkGetBufferMemoryRequirements(device->vk, buffer->vk, &needs));
     bool large = is_large(device, placement, needs.size);
     VkMemoryAllocateInfo allocation = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
@@ -197,7 +197,8 @@ static whit_result make_view(struct buffer *buffer)
     struct device *device = buffer->device;
     whit_result result = WHIT_OK;
     VkFormatProperties format;
-    vkGetPhysicalDeviceFormatProperties(device->physical, VK_FORMAT_R32G32B32A32_UINT, &format);
+    LAYERS_BESIDE(vkGetPhysicalDeviceFormatProperties(device->physical, VK_FORMAT_R32G32B32A32_UINT,
+                                                      &format));
     if (!(format.bufferFeatures & VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT)) {
         log_error(&device->log, "buffer \"%s\": the device has no texel buffers of four uint32",
                   buffer->name);
@@ -299,9 +300,9 @@ void buffer_destroy(struct buffer *buffer)
     if (!buffer)
         return;
     VkDevice vk = buffer->device->vk;
-    vkDestroyBufferView(vk, buffer->texels, NULL);
-    vkDestroyBuffer(vk, buffer->vk, NULL);
-    vkFreeMemory(vk, buffer->memory, NULL);
+    LAYERS_BESIDE(vkDestroyBufferView(vk, buffer->texels, NULL));
+    LAYERS_BESIDE(vkDestroyBuffer(vk, buffer->vk, NULL));
+    LAYERS_BESIDE(vkFreeMemory(vk, buffer->memory, NULL));
     free(buffer);
 }
 

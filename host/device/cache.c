@@ -48,13 +48,15 @@ fail:
 static void cache_save(struct device *device)
 {
     size_t size_bytes = 0;
-    if (vkGetPipelineCacheData(device->vk, device->cache, &size_bytes, NULL) != VK_SUCCESS ||
+    if (LAYERS_BESIDE(vkGetPipelineCacheData(device->vk, device->cache, &size_bytes, NULL)) !=
+            VK_SUCCESS ||
         size_bytes < sizeof(VkPipelineCacheHeaderVersionOne))
         return;
     uint8_t *data = array_alloc_zeroed(size_bytes, 1);
     char *name = device_kept_name(device, "pipelines");
     if (data && name &&
-        vkGetPipelineCacheData(device->vk, device->cache, &size_bytes, data) == VK_SUCCESS &&
+        LAYERS_BESIDE(vkGetPipelineCacheData(device->vk, device->cache, &size_bytes, data)) ==
+            VK_SUCCESS &&
         hash_bytes(HASH_START, data, size_bytes) != device->cache_hash)
         store_write(&device->log, name, data, size_bytes);
     free(name);
@@ -67,6 +69,6 @@ void cache_close(struct device *device)
         return;
     if (!device->lost)
         cache_save(device);
-    vkDestroyPipelineCache(device->vk, device->cache, NULL);
+    LAYERS_BESIDE(vkDestroyPipelineCache(device->vk, device->cache, NULL));
     device->cache = VK_NULL_HANDLE;
 }

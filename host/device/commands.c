@@ -88,10 +88,10 @@ void commands_destroy(struct commands *commands)
     VkDevice vk = commands->device->vk;
     /* Waits for a lost device too: that returns at once, and nothing in use is destroyed. */
     if (commands->state == COMMANDS_IN_FLIGHT)
-        (void)vkWaitForFences(vk, 1, &commands->fence, VK_TRUE, UINT64_MAX);
-    vkDestroyQueryPool(vk, commands->queries, NULL);
-    vkDestroyFence(vk, commands->fence, NULL);
-    vkDestroyCommandPool(vk, commands->pool, NULL);
+        (void)LAYERS_BESIDE(vkWaitForFences(vk, 1, &commands->fence, VK_TRUE, UINT64_MAX));
+    LAYERS_BESIDE(vkDestroyQueryPool(vk, commands->queries, NULL));
+    LAYERS_BESIDE(vkDestroyFence(vk, commands->fence, NULL));
+    LAYERS_BESIDE(vkDestroyCommandPool(vk, commands->pool, NULL));
     free(commands);
 }
 
@@ -136,7 +136,7 @@ whit_result commands_begin(struct commands *commands)
     commands->span_open = false;
     commands->span_count = 0;
     if (commands->queries)
-        vkCmdResetQueryPool(commands->vk, commands->queries, 0, 2 * COMMANDS_SPANS);
+        LAYERS_BESIDE(vkCmdResetQueryPool(commands->vk, commands->queries, 0, 2 * COMMANDS_SPANS));
     if (device->begin_label) {
         VkDebugUtilsLabelEXT label = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
                                       .pLabelName = commands->name};
@@ -152,10 +152,10 @@ void commands_bind(struct commands *commands, struct pipeline *pipeline, struct 
     if (!is_recording(commands))
         return;
     commands->bound = pipeline;
-    vkCmdBindPipeline(commands->vk, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline->vk);
+    LAYERS_BESIDE(vkCmdBindPipeline(commands->vk, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline->vk));
     if (set && set->vk)
-        vkCmdBindDescriptorSets(commands->vk, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline->layout, 0,
-                                1, &set->vk, 0, NULL);
+        LAYERS_BESIDE(vkCmdBindDescriptorSets(commands->vk, VK_PIPELINE_BIND_POINT_COMPUTE,
+                                              pipeline->layout, 0, 1, &set->vk, 0, NULL));
 }
 
 void commands_push(struct commands *commands, const void *data, uint32_t size_bytes)
@@ -170,8 +170,8 @@ void commands_push(struct commands *commands, const void *data, uint32_t size_by
                         commands->bound ? commands->bound->name : "(none)");
         return;
     }
-    vkCmdPushConstants(commands->vk, commands->bound->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                       size_bytes, data);
+    LAYERS_BESIDE(vkCmdPushConstants(commands->vk, commands->bound->layout,
+                                     VK_SHADER_STAGE_COMPUTE_BIT, 0, size_bytes, data));
 }
 
 void commands_dispatch(struct commands *commands, uint32_t groups_x, uint32_t groups_y,
@@ -192,7 +192,7 @@ void commands_dispatch(struct commands *commands, uint32_t groups_x, uint32_t gr
                         max[2]);
         return;
     }
-    vkCmdDispatch(commands->vk, groups_x, groups_y, groups_z);
+    LAYERS_BESIDE(vkCmdDispatch(commands->vk, groups_x, groups_y, groups_z));
 }
 
 static bool fits(const struct buffer *buffer, uint64_t offset_bytes, uint64_t size_bytes)
@@ -213,7 +213,7 @@ void commands_dispatch_indirect(struct commands *commands, struct buffer *buffer
                         commands->name, buffer->name, offset_bytes);
         return;
     }
-    vkCmdDispatchIndirect(commands->vk, buffer->vk, offset_bytes);
+    LAYERS_BESIDE(vkCmdDispatchIndirect(commands->vk, buffer->vk, offset_bytes));
 }
 
 void commands_barrier(struct commands *commands)
@@ -231,7 +231,8 @@ void commands_barrier(struct commands *commands)
                          VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT |
                          VK_ACCESS_INDIRECT_COMMAND_READ_BIT | VK_ACCESS_HOST_READ_BIT,
     };
-    vkCmdPipelineBarrier(commands->vk, stages, stages, 0, 1, &barrier, 0, NULL, 0, NULL);
+    LAYERS_BESIDE(
+        vkCmdPipelineBarrier(commands->vk, stages, stages, 0, 1, &barrier, 0, NULL, 0, NULL));
 }
 
 void commands_fill(struct commands *commands, struct buffer *buffer, uint64_t offset_bytes,
@@ -246,7 +247,7 @@ void commands_fill(struct commands *commands, struct buffer *buffer, uint64_t of
                         commands->name, size_bytes, offset_bytes, buffer->name, buffer->size_bytes);
         return;
     }
-    vkCmdFillBuffer(commands->vk, buffer->vk, offset_bytes, size_bytes, word);
+    LAYERS_BESIDE(vkCmdFillBuffer(commands->vk, buffer->vk, offset_bytes, size_bytes, word));
 }
 
 static bool overlap(const struct buffer *a, uint64_t a_offset, const struct buffer *b,
@@ -271,7 +272,7 @@ void commands_copy(struct commands *commands, struct buffer *from, uint64_t from
         return;
     }
     VkBufferCopy region = {from_offset_bytes, to_offset_bytes, size_bytes};
-    vkCmdCopyBuffer(commands->vk, from->vk, to->vk, 1, &region);
+    LAYERS_BESIDE(vkCmdCopyBuffer(commands->vk, from->vk, to->vk, 1, &region));
 }
 
 /* Both time stamps of a span wait for all earlier work, so that spans add up to the time of the
@@ -279,8 +280,8 @@ void commands_copy(struct commands *commands, struct buffer *from, uint64_t from
 static void stamp(struct commands *commands, uint32_t query)
 {
     if (commands->queries)
-        vkCmdWriteTimestamp(commands->vk, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, commands->queries,
-                            query);
+        LAYERS_BESIDE(vkCmdWriteTimestamp(commands->vk, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT,
+                                          commands->queries, query));
 }
 
 void commands_span_begin(struct commands *commands, const char *label)
@@ -404,7 +405,7 @@ whit_result commands_wait(struct commands *commands, double timeout_ms)
 fail:
     if (result != WHIT_ERROR_TIME_LIMIT) {
         /* The caller may now destroy what these commands use, so the device must be idle. */
-        (void)vkDeviceWaitIdle(device->vk);
+        (void)LAYERS_BESIDE(vkDeviceWaitIdle(device->vk));
         commands->state = COMMANDS_IDLE;
     }
     return result;

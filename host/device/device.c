@@ -21,12 +21,13 @@ uint32_t device_compile_threads(const struct device *device)
 static bool has_extension(struct device *device, const char *name)
 {
     uint32_t count = 0;
-    if (vkEnumerateDeviceExtensionProperties(device->physical, NULL, &count, NULL) < 0)
+    if (LAYERS_BESIDE(vkEnumerateDeviceExtensionProperties(device->physical, NULL, &count, NULL)) <
+        0)
         return false;
     VkExtensionProperties *extensions = array_alloc_zeroed(count, sizeof *extensions);
     bool found = false;
-    if (extensions &&
-        vkEnumerateDeviceExtensionProperties(device->physical, NULL, &count, extensions) >= 0)
+    if (extensions && LAYERS_BESIDE(vkEnumerateDeviceExtensionProperties(device->physical, NULL,
+                                                                         &count, extensions)) >= 0)
         for (uint32_t i = 0; i < count && !found; ++i)
             found = strcmp(extensions[i].extensionName, name) == 0;
     free(extensions);
@@ -47,7 +48,6 @@ static whit_result check_room(const struct device *device)
 
 static whit_result logical_create(struct device *device)
 {
-    whit_result result = WHIT_OK;
     uint32_t timestamp_bits = 0;
     if (!instance_queue_family(device->physical, device->surface, &device->queue_family,
                                &timestamp_bits))
@@ -92,30 +92,33 @@ static whit_result logical_create(struct device *device)
         .ppEnabledExtensionNames = extensions,
         .pEnabledFeatures = &features,
     };
-    VK_TRY(device, vkCreateDevice(device->physical, &info, NULL, &device->vk));
-    vkGetDeviceQueue(device->vk, device->queue_family, 0, &device->queue);
+    VkResult vk = VK_SUCCESS;
+    if (device_may_call(device, "vkCreateDevice", &vk))
+        vk = LAYERS_ALONE(vkCreateDevice(device->physical, &info, NULL, &device->vk));
+    whit_result result = device_check(device, vk, "vkCreateDevice", __FILE__, __LINE__);
+    if (result != WHIT_OK)
+        return result;
+    LAYERS_BESIDE(vkGetDeviceQueue(device->vk, device->queue_family, 0, &device->queue));
     if (tells) {
-        device->get_executables = (PFN_vkGetPipelineExecutablePropertiesKHR)vkGetDeviceProcAddr(
-            device->vk, "vkGetPipelineExecutablePropertiesKHR");
-        device->get_executable_statistics =
-            (PFN_vkGetPipelineExecutableStatisticsKHR)vkGetDeviceProcAddr(
-                device->vk, "vkGetPipelineExecutableStatisticsKHR");
+        device->get_executables = (PFN_vkGetPipelineExecutablePropertiesKHR)LAYERS_BESIDE(
+            vkGetDeviceProcAddr(device->vk, "vkGetPipelineExecutablePropertiesKHR"));
+        device->get_executable_statistics = (PFN_vkGetPipelineExecutableStatisticsKHR)LAYERS_BESIDE(
+            vkGetDeviceProcAddr(device->vk, "vkGetPipelineExecutableStatisticsKHR"));
     }
     /* The loader (1.3.239) looks the device of a named object up in its list of instances, to which
        other threads may add theirs, without a lock. Validation locks around both (layers.h). */
     if (device->debug_utils && device->validation)
-        device->set_object_name = (PFN_vkSetDebugUtilsObjectNameEXT)vkGetDeviceProcAddr(
-            device->vk, "vkSetDebugUtilsObjectNameEXT");
+        device->set_object_name = (PFN_vkSetDebugUtilsObjectNameEXT)LAYERS_BESIDE(
+            vkGetDeviceProcAddr(device->vk, "vkSetDebugUtilsObjectNameEXT"));
     if (device->debug_utils) {
-        device->begin_label = (PFN_vkCmdBeginDebugUtilsLabelEXT)vkGetDeviceProcAddr(
-            device->vk, "vkCmdBeginDebugUtilsLabelEXT");
-        device->end_label = (PFN_vkCmdEndDebugUtilsLabelEXT)vkGetDeviceProcAddr(
-            device->vk, "vkCmdEndDebugUtilsLabelEXT");
+        device->begin_label = (PFN_vkCmdBeginDebugUtilsLabelEXT)LAYERS_BESIDE(
+            vkGetDeviceProcAddr(device->vk, "vkCmdBeginDebugUtilsLabelEXT"));
+        device->end_label = (PFN_vkCmdEndDebugUtilsLabelEXT)LAYERS_BESIDE(
+            vkGetDeviceProcAddr(device->vk, "vkCmdEndDebugUtilsLabelEXT"));
     }
     device_name_object(device, VK_OBJECT_TYPE_DEVICE, (uint64_t)device->vk, "whit");
     device_name_object(device, VK_OBJECT_TYPE_QUEUE, (uint64_t)device->queue, "compute");
-fail:
-    return result;
+    return WHIT_OK;
 }
 
 whit_result device_create(const whit_log *log, const whit_device_params *params,
@@ -176,7 +179,7 @@ void device_destroy(struct device *device)
         buffer_destroy(device->staging);
         kept_finish(device);
         cache_close(device);
-        vkDestroyDevice(device->vk, NULL);
+        LAYERS_ALONE(vkDestroyDevice(device->vk, NULL));
     }
     instance_destroy(device);
     child_release_forks();

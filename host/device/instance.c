@@ -193,7 +193,7 @@ static whit_result make_instance(struct device *device, uint32_t extensions,
     };
     VkResult vk = VK_SUCCESS;
     if (device_may_call(device, "vkCreateInstance", &vk))
-        vk = vkCreateInstance(&info, NULL, &device->instance);
+        vk = LAYERS_ALONE(vkCreateInstance(&info, NULL, &device->instance));
     if (vk == VK_ERROR_INCOMPATIBLE_DRIVER)
         return refuse(device, "no Vulkan driver could be loaded", install_driver,
                       WHIT_ERROR_NO_DEVICE);
@@ -204,12 +204,11 @@ static whit_result make_messenger(struct device *device)
 {
     whit_result result = WHIT_OK;
     PFN_vkCreateDebugUtilsMessengerEXT create_messenger =
-        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(device->instance,
-                                                                  "vkCreateDebugUtilsMessengerEXT");
+        (PFN_vkCreateDebugUtilsMessengerEXT)LAYERS_BESIDE(
+            vkGetInstanceProcAddr(device->instance, "vkCreateDebugUtilsMessengerEXT"));
     VkDebugUtilsMessengerCreateInfoEXT info = messenger_info(device);
     if (create_messenger)
-        VK_TRY(device,
-               LAYERS_BESIDE(create_messenger(device->instance, &info, NULL, &device->messenger)));
+        VK_TRY(device, create_messenger(device->instance, &info, NULL, &device->messenger));
 fail:
     return result;
 }
@@ -257,13 +256,13 @@ void instance_destroy(struct device *device)
         return;
     if (device->messenger) {
         PFN_vkDestroyDebugUtilsMessengerEXT destroy_messenger =
-            (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
-                device->instance, "vkDestroyDebugUtilsMessengerEXT");
+            (PFN_vkDestroyDebugUtilsMessengerEXT)LAYERS_BESIDE(
+                vkGetInstanceProcAddr(device->instance, "vkDestroyDebugUtilsMessengerEXT"));
         LAYERS_BESIDE(destroy_messenger(device->instance, device->messenger, NULL));
     }
     if (device->surface)
-        vkDestroySurfaceKHR(device->instance, device->surface, NULL);
-    vkDestroyInstance(device->instance, NULL);
+        LAYERS_BESIDE(vkDestroySurfaceKHR(device->instance, device->surface, NULL));
+    LAYERS_ALONE(vkDestroyInstance(device->instance, NULL));
     device->instance = NULL;
 }
 
@@ -272,7 +271,8 @@ static bool presents(VkPhysicalDevice physical, uint32_t family, VkQueueFlags fl
 {
     VkBool32 supported = VK_FALSE;
     return (flags & VK_QUEUE_GRAPHICS_BIT) &&
-           vkGetPhysicalDeviceSurfaceSupportKHR(physical, family, surface, &supported) >= 0 &&
+           LAYERS_BESIDE(
+               vkGetPhysicalDeviceSurfaceSupportKHR(physical, family, surface, &supported)) >= 0 &&
            supported;
 }
 
@@ -282,7 +282,7 @@ bool instance_queue_family(VkPhysicalDevice physical, VkSurfaceKHR surface, uint
     VkQueueFamilyProperties families[32];
     uint32_t count = sizeof families / sizeof *families;
     bool found = false;
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
+    LAYERS_BESIDE(vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families));
     *timestamp_bits = 0;
     for (uint32_t i = 0; i < count; ++i) {
         if (!(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT))
@@ -321,7 +321,7 @@ static uint64_t device_memory(VkPhysicalDevice physical)
 {
     VkPhysicalDeviceMemoryProperties memory;
     uint64_t largest = 0;
-    vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+    LAYERS_BESIDE(vkGetPhysicalDeviceMemoryProperties(physical, &memory));
     for (uint32_t i = 0; i < memory.memoryHeapCount; ++i)
         if ((memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) &&
             memory.memoryHeaps[i].size > largest)
@@ -347,12 +347,12 @@ static void fill_details(VkPhysicalDevice physical, whit_device_info *info,
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES, .pNext = &v12};
     VkPhysicalDeviceProperties2 properties = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &v11};
-    vkGetPhysicalDeviceProperties2(physical, &properties);
+    LAYERS_BESIDE(vkGetPhysicalDeviceProperties2(physical, &properties));
     snprintf(info->driver, sizeof info->driver, "%.127s %.127s", v12.driverName, v12.driverInfo);
     info->subgroup_size = v11.subgroupSize;
 
     VkPhysicalDeviceFeatures features;
-    vkGetPhysicalDeviceFeatures(physical, &features);
+    LAYERS_BESIDE(vkGetPhysicalDeviceFeatures(physical, &features));
     info->float64 = features.shaderFloat64;
     info->int64 = features.shaderInt64;
     if (limits)
@@ -371,7 +371,7 @@ static void fill_info(VkPhysicalDevice physical, VkSurfaceKHR surface, uint32_t 
                       whit_device_info *info)
 {
     VkPhysicalDeviceProperties properties;
-    vkGetPhysicalDeviceProperties(physical, &properties);
+    LAYERS_BESIDE(vkGetPhysicalDeviceProperties(physical, &properties));
     const VkPhysicalDeviceLimits *limits = &properties.limits;
     uint32_t version = properties.apiVersion;
     uint32_t family, timestamp_bits;
@@ -535,8 +535,8 @@ whit_result instance_select(struct device *device, const char *selector)
         device->physical = handles[best];
         device->info = infos[best];
         fill_details(device->physical, &device->info, &device->limits);
-        vkGetPhysicalDeviceProperties(device->physical, &device->properties);
-        vkGetPhysicalDeviceMemoryProperties(device->physical, &device->memory);
+        LAYERS_BESIDE(vkGetPhysicalDeviceProperties(device->physical, &device->properties));
+        LAYERS_BESIDE(vkGetPhysicalDeviceMemoryProperties(device->physical, &device->memory));
     }
     free(handles);
     free(infos);

@@ -278,7 +278,7 @@ static whit_result make_pipeline(struct pipeline *pipeline, const struct pipelin
            vkCreateComputePipelines(device->vk, device->cache, 1, &info, NULL, &pipeline->vk));
     device_name_object(device, VK_OBJECT_TYPE_PIPELINE, (uint64_t)pipeline->vk, pipeline->name);
 fail:
-    vkDestroyShaderModule(device->vk, module, NULL);
+    LAYERS_BESIDE(vkDestroyShaderModule(device->vk, module, NULL));
     free(entries);
     return result;
 }
@@ -365,9 +365,9 @@ void pipeline_destroy(struct pipeline *pipeline)
     if (!pipeline || kept_give_back(pipeline))
         return;
     VkDevice vk = pipeline->device->vk;
-    vkDestroyPipeline(vk, pipeline->vk, NULL);
-    vkDestroyPipelineLayout(vk, pipeline->layout, NULL);
-    vkDestroyDescriptorSetLayout(vk, pipeline->set_layout, NULL);
+    LAYERS_BESIDE(vkDestroyPipeline(vk, pipeline->vk, NULL));
+    LAYERS_BESIDE(vkDestroyPipelineLayout(vk, pipeline->layout, NULL));
+    LAYERS_BESIDE(vkDestroyDescriptorSetLayout(vk, pipeline->set_layout, NULL));
     free(pipeline->bindings);
     free(pipeline->offered);
     free(pipeline);
@@ -443,7 +443,7 @@ static void write_set(struct binding_set *set, const struct pipeline *pipeline,
             .pBufferInfo = &range,
             .pTexelBufferView = &buffers[i]->texels,
         };
-        vkUpdateDescriptorSets(set->device->vk, 1, &write, 0, NULL);
+        LAYERS_BESIDE(vkUpdateDescriptorSets(set->device->vk, 1, &write, 0, NULL));
     }
 }
 
@@ -479,6 +479,6 @@ void binding_set_destroy(struct binding_set *set)
 {
     if (!set)
         return;
-    vkDestroyDescriptorPool(set->device->vk, set->pool, NULL);
+    LAYERS_BESIDE(vkDestroyDescriptorPool(set->device->vk, set->pool, NULL));
     free(set);
 }

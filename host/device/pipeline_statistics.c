@@ -55,8 +55,7 @@ static whit_result read_executable(const struct pipeline *pipeline, uint32_t ind
         .pipeline = pipeline->vk,
         .executableIndex = index,
     };
-    VK_TRY(device, (VkResult)LAYERS_BESIDE(
-                       device->get_executable_statistics(device->vk, &info, &count, statistics)));
+    VK_TRY(device, device->get_executable_statistics(device->vk, &info, &count, statistics));
     for (uint32_t i = 0; i < count; ++i)
         add(to, name, statistics[i].name, value_of(&statistics[i]));
 fail:
@@ -81,8 +80,7 @@ whit_result pipeline_get_statistics(const struct pipeline *pipeline, whit_statis
         .sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR,
         .pipeline = pipeline->vk,
     };
-    VK_TRY(device, (VkResult)LAYERS_BESIDE(
-                       device->get_executables(device->vk, &info, &executable_count, executables)));
+    VK_TRY(device, device->get_executables(device->vk, &info, &executable_count, executables));
     for (uint32_t i = 0; result == WHIT_OK && i < executable_count; ++i) {
         const char *name = executable_count > 1 ? executables[i].name : NULL;
         add(&to, name, "lanes of a subgroup", executables[i].subgroupSize);

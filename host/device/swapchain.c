@@ -131,9 +131,9 @@ static void drop_views(struct swapchain *swapchain)
     VkDevice vk = swapchain->device->vk;
     for (uint32_t i = 0; i < swapchain->image_count; ++i) {
         struct window_image *image = &swapchain->images[i];
-        vkDestroyFramebuffer(vk, image->framebuffer, NULL);
-        vkDestroyImageView(vk, image->view, NULL);
-        vkDestroySemaphore(vk, image->drawn, NULL);
+        LAYERS_BESIDE(vkDestroyFramebuffer(vk, image->framebuffer, NULL));
+        LAYERS_BESIDE(vkDestroyImageView(vk, image->view, NULL));
+        LAYERS_BESIDE(vkDestroySemaphore(vk, image->drawn, NULL));
         *image = (struct window_image){0};
     }
     swapchain->image_count = 0;
@@ -144,13 +144,13 @@ void swapchain_destroy(struct swapchain *swapchain)
     if (!swapchain)
         return;
     VkDevice vk = swapchain->device->vk;
-    (void)vkDeviceWaitIdle(vk); /* fails for a lost device, which has no work left */
+    (void)LAYERS_BESIDE(vkDeviceWaitIdle(vk)); /* fails for a lost device, which has no work left */
     drop_views(swapchain);
     buffer_destroy(swapchain->picture);
     buffer_destroy(swapchain->capture);
-    vkDestroySwapchainKHR(vk, swapchain->vk, NULL);
-    vkDestroyRenderPass(vk, swapchain->pass, NULL);
-    vkDestroySemaphore(vk, swapchain->acquired, NULL);
+    LAYERS_BESIDE(vkDestroySwapchainKHR(vk, swapchain->vk, NULL));
+    LAYERS_BESIDE(vkDestroyRenderPass(vk, swapchain->pass, NULL));
+    LAYERS_BESIDE(vkDestroySemaphore(vk, swapchain->acquired, NULL));
     commands_destroy(swapchain->commands);
     free(swapchain);
 }
@@ -161,8 +161,8 @@ static VkPresentModeKHR choose_mode(const struct swapchain *swapchain)
     uint32_t count = sizeof modes / sizeof *modes;
     VkPresentModeKHR best = VK_PRESENT_MODE_FIFO_KHR; /* Vulkan promises this one */
     if (swapchain->vsync ||
-        vkGetPhysicalDeviceSurfacePresentModesKHR(swapchain->device->physical,
-                                                  swapchain->device->surface, &count, modes) < 0)
+        LAYERS_BESIDE(vkGetPhysicalDeviceSurfacePresentModesKHR(
+            swapchain->device->physical, swapchain->device->surface, &count, modes)) < 0)
         return best;
     for (uint32_t i = 0; i < count; ++i) {
         if (modes[i] == VK_PRESENT_MODE_IMMEDIATE_KHR)
@@ -220,7 +220,7 @@ static whit_result make_chain(struct swapchain *swapchain, uint32_t width, uint3
     ++swapchain->info.recreated;
 fail:
     if (old && old != swapchain->vk)
-        vkDestroySwapchainKHR(device->vk, old, NULL);
+        LAYERS_BESIDE(vkDestroySwapchainKHR(device->vk, old, NULL));
     return result;
 }
 

@@ -115,8 +115,9 @@ static void change_layout(const struct swapchain *swapchain, VkImage image, VkIm
         .image = image,
         .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
     };
-    vkCmdPipelineBarrier(commands_vk(swapchain->commands), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
+    LAYERS_BESIDE(
+        vkCmdPipelineBarrier(commands_vk(swapchain->commands), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                             VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier));
 }
 
 /* Copies the picture; without one the window is dark. Leaves the image in layout
@@ -130,10 +131,11 @@ static void record_picture(const struct swapchain *swapchain, VkImage image)
     const VkImageSubresourceRange all = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     change_layout(swapchain, image, VK_IMAGE_LAYOUT_UNDEFINED, layout);
     if (swapchain->has_picture)
-        vkCmdCopyBufferToImage(commands_vk(swapchain->commands), swapchain->picture->vk, image,
-                               layout, 1, &copy);
+        LAYERS_BESIDE(vkCmdCopyBufferToImage(commands_vk(swapchain->commands),
+                                             swapchain->picture->vk, image, layout, 1, &copy));
     else
-        vkCmdClearColorImage(commands_vk(swapchain->commands), image, layout, &DARK, 1, &all);
+        LAYERS_BESIDE(
+            vkCmdClearColorImage(commands_vk(swapchain->commands), image, layout, &DARK, 1, &all));
     change_layout(swapchain, image, layout, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
 }
 
@@ -146,10 +148,11 @@ static void record_overlay(struct swapchain *swapchain, const struct window_imag
         .framebuffer = image->framebuffer,
         .renderArea = {{0, 0}, swapchain->extent},
     };
-    vkCmdBeginRenderPass(commands_vk(swapchain->commands), &begin, VK_SUBPASS_CONTENTS_INLINE);
+    LAYERS_BESIDE(
+        vkCmdBeginRenderPass(commands_vk(swapchain->commands), &begin, VK_SUBPASS_CONTENTS_INLINE));
     if (draw)
         draw(user, commands_vk(swapchain->commands));
-    vkCmdEndRenderPass(commands_vk(swapchain->commands));
+    LAYERS_BESIDE(vkCmdEndRenderPass(commands_vk(swapchain->commands)));
 }
 
 /* Expects the image in layout COLOR_ATTACHMENT_OPTIMAL, and leaves it in *layout. */
@@ -172,8 +175,9 @@ static whit_result record_capture(struct swapchain *swapchain, const struct wind
     VkBufferImageCopy copy = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                               .imageExtent = {extent.width, extent.height, 1}};
     change_layout(swapchain, image->image, *layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    vkCmdCopyImageToBuffer(commands_vk(swapchain->commands), image->image,
-                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, swapchain->capture->vk, 1, &copy);
+    LAYERS_BESIDE(vkCmdCopyImageToBuffer(commands_vk(swapchain->commands), image->image,
+                                         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                         swapchain->capture->vk, 1, &copy));
     *layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     return WHIT_OK;
 }
@@ -216,8 +220,8 @@ static whit_result acquire(struct swapchain *swapchain, uint32_t *index, bool *u
     VkResult vk = VK_SUCCESS;
     if (device_may_call(device, "vkAcquireNextImageKHR", &vk)) {
         VkResult instead = vk;
-        vk = vkAcquireNextImageKHR(device->vk, swapchain->vk, UINT64_MAX, swapchain->acquired,
-                                   VK_NULL_HANDLE, index);
+        vk = LAYERS_BESIDE(vkAcquireNextImageKHR(device->vk, swapchain->vk, UINT64_MAX,
+                                                 swapchain->acquired, VK_NULL_HANDLE, index));
         vk = vk == VK_SUCCESS ? instead : vk;
     }
     return window_result(swapchain, vk, "vkAcquireNextImageKHR", usable);
@@ -238,7 +242,7 @@ static whit_result present(struct swapchain *swapchain, uint32_t index, bool *sh
     double start_ms = clock_ms();
     if (device_may_call(device, "vkQueuePresentKHR", &vk)) {
         VkResult instead = vk;
-        vk = vkQueuePresentKHR(device->queue, &info);
+        vk = LAYERS_BESIDE(vkQueuePresentKHR(device->queue, &info));
         vk = vk == VK_SUCCESS ? instead : vk;
     }
     swapchain->info.present_ms = clock_ms() - start_ms;

@@ -137,7 +137,7 @@ void device_name_object(struct device *device, VkObjectType type, uint64_t handl
     do {                                                                                           \
         VkResult vk_ = VK_SUCCESS;                                                                 \
         if (device_may_call((device), #__VA_ARGS__, &vk_))                                         \
-            vk_ = (__VA_ARGS__);                                                                   \
+            vk_ = (VkResult)LAYERS_BESIDE(__VA_ARGS__);                                            \
         result = device_check((device), vk_, #__VA_ARGS__, __FILE__, __LINE__);                    \
         if (result != WHIT_OK)                                                                     \
             goto fail;                                                                             \

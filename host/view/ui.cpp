@@ -317,7 +317,7 @@ static void start_backend(struct ui *ui)
     pool.maxSets = 8;
     pool.poolSizeCount = 1;
     pool.pPoolSizes = &size;
-    check_call(vkCreateDescriptorPool(ui->device, &pool, nullptr, &ui->descriptors));
+    check_call(LAYERS_BESIDE(vkCreateDescriptorPool(ui->device, &pool, nullptr, &ui->descriptors)));
     ImGui_ImplVulkan_InitInfo info = {};
     info.Instance = static_cast<VkInstance>(handles.instance);
     info.PhysicalDevice = static_cast<VkPhysicalDevice>(handles.physical);
@@ -414,13 +414,14 @@ void ui_destroy(struct ui *ui)
     if (!ui)
         return;
     if (ui->device)
-        (void)vkDeviceWaitIdle(ui->device); // a lost device has nothing left to wait for
+        (void)LAYERS_BESIDE(
+            vkDeviceWaitIdle(ui->device)); // a lost device has nothing left to wait for
     // After an error in a frame the backend may have handles of destroyed objects: it is left as it
     // is.
     if (ui->backend && ui->result == WHIT_OK)
         LAYERS_BESIDE(ImGui_ImplVulkan_Shutdown());
     if (ui->device)
-        vkDestroyDescriptorPool(ui->device, ui->descriptors, nullptr);
+        LAYERS_BESIDE(vkDestroyDescriptorPool(ui->device, ui->descriptors, nullptr));
     ImGui::DestroyContext();
     while (blocks.after != &blocks)
         give(blocks.after + 1, nullptr);
