@@ -90,9 +90,9 @@ static whit_result check_limit(const struct buffer *buffer, uint64_t size_bytes,
     char size[32], max[32];
     describe_size(size_bytes, size, sizeof size);
     describe_size(limit, max, sizeof max);
-    log_error(&buffer->device->log, "buffer \"%s\": %s is over the device's limit of %s for %s",
-              buffer->name, size, max, what);
-    return WHIT_ERROR_DEVICE;
+    return log_failure(&buffer->device->log, WHIT_ERROR_DEVICE,
+                       "buffer \"%s\": %s is over the device's limit of %s for %s", buffer->name,
+                       size, max, what);
 }
 
 static whit_result check_limits(const struct buffer *buffer, uint64_t size_bytes)
@@ -170,10 +170,9 @@ static whit_result allocate(struct buffer *buffer)
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
         .allocationSize = large ? round_to_large(needs.size) + LARGE_PAGE_BYTES : needs.size,
     };
-    if (!find_memory_type(device, needs.memoryTypeBits, placement, &allocation.memoryTypeIndex)) {
-        log_error(&device->log, "buffer \"%s\": the device has no memory for it", buffer->name);
-        return WHIT_ERROR_DEVICE;
-    }
+    if (!find_memory_type(device, needs.memoryTypeBits, placement, &allocation.memoryTypeIndex))
+        return log_failure(&device->log, WHIT_ERROR_DEVICE,
+                           "buffer \"%s\": the device has no memory for it", buffer->name);
     VK_TRY(device, vkAllocateMemory(device->vk, &allocation, NULL, &buffer->memory));
     uint64_t offset_bytes = 0;
     if (placement != PLACE_DEVICE) {
@@ -199,11 +198,10 @@ static whit_result make_view(struct buffer *buffer)
     VkFormatProperties format;
     LAYERS_BESIDE(vkGetPhysicalDeviceFormatProperties(device->physical, VK_FORMAT_R32G32B32A32_UINT,
                                                       &format));
-    if (!(format.bufferFeatures & VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT)) {
-        log_error(&device->log, "buffer \"%s\": the device has no texel buffers of four uint32",
-                  buffer->name);
-        return WHIT_ERROR_DEVICE;
-    }
+    if (!(format.bufferFeatures & VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT))
+        return log_failure(&device->log, WHIT_ERROR_DEVICE,
+                           "buffer \"%s\": the device has no texel buffers of four uint32",
+                           buffer->name);
     VkBufferViewCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
         .buffer = buffer->vk,
@@ -248,10 +246,9 @@ whit_result buffer_create(struct device *device, uint64_t size_bytes, uint32_t u
 {
     *out = NULL;
     struct buffer *buffer = array_alloc_zeroed(1, sizeof *buffer);
-    if (!buffer) {
-        log_error(&device->log, "out of memory for buffer \"%s\"", name ? name : "");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!buffer)
+        return log_failure(&device->log, WHIT_ERROR_MEMORY, "out of memory for buffer \"%s\"",
+                           name ? name : "");
     buffer->device = device;
     buffer->uses = uses;
     snprintf(buffer->name, sizeof buffer->name, "%s", name ? name : "");
@@ -318,10 +315,9 @@ static whit_result check_access(const struct buffer *buffer, uint64_t offset_byt
         return WHIT_ERROR_DEVICE;
     if (offset_bytes <= buffer->size_bytes && size_bytes <= buffer->size_bytes - offset_bytes)
         return WHIT_OK;
-    log_error(&buffer->device->log,
-              "buffer \"%s\" of %" PRIu64 " bytes: access to %" PRIu64 " bytes at %" PRIu64,
-              buffer->name, buffer->size_bytes, size_bytes, offset_bytes);
-    return WHIT_ERROR_USAGE;
+    return log_usage(&buffer->device->log,
+                     "buffer \"%s\" of %" PRIu64 " bytes: access to %" PRIu64 " bytes at %" PRIu64,
+                     buffer->name, buffer->size_bytes, size_bytes, offset_bytes);
 }
 
 static whit_result staging_ready(struct device *device)

@@ -66,10 +66,9 @@ whit_result commands_create(struct device *device, const char *name, struct comm
 {
     *out = NULL;
     struct commands *commands = array_alloc_zeroed(1, sizeof *commands);
-    if (!commands) {
-        log_error(&device->log, "out of memory for commands \"%s\"", name ? name : "");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!commands)
+        return log_failure(&device->log, WHIT_ERROR_MEMORY, "out of memory for commands \"%s\"",
+                           name ? name : "");
     commands->device = device;
     snprintf(commands->name, sizeof commands->name, "%s", name ? name : "");
     whit_result result = make_commands(commands);
@@ -119,10 +118,9 @@ whit_result commands_begin(struct commands *commands)
 {
     struct device *device = commands->device;
     whit_result result = WHIT_OK;
-    if (commands->state == COMMANDS_IN_FLIGHT) {
-        log_error(&device->log, "commands \"%s\" begun again while in flight", commands->name);
-        return WHIT_ERROR_USAGE;
-    }
+    if (commands->state == COMMANDS_IN_FLIGHT)
+        return log_usage(&device->log, "commands \"%s\" begun again while in flight",
+                         commands->name);
     VkCommandBufferBeginInfo info = {
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,

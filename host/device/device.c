@@ -42,8 +42,8 @@ static whit_result check_room(const struct device *device)
     if (device->info.kind != WHIT_DEVICE_CPU ||
         threads_have_room(threads_available() + OTHER_THREADS))
         return WHIT_OK;
-    log_error(&device->log, "%s: out of memory for its threads", device->info.name);
-    return WHIT_ERROR_MEMORY;
+    return log_failure(&device->log, WHIT_ERROR_MEMORY, "%s: out of memory for its threads",
+                       device->info.name);
 }
 
 static whit_result logical_create(struct device *device)
@@ -126,10 +126,8 @@ whit_result device_create(const whit_log *log, const whit_device_params *params,
 {
     *out = NULL;
     struct device *device = array_alloc_zeroed(1, sizeof *device);
-    if (!device) {
-        log_error(log, "out of memory for a device");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!device)
+        return log_failure(log, WHIT_ERROR_MEMORY, "out of memory for a device");
     pthread_mutex_init(&device->kept_lock, NULL);
     if (log)
         device->log = log_or_silence(log);

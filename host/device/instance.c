@@ -96,10 +96,9 @@ static whit_result find_extensions(struct device *device, const char *layer,
     if (result != WHIT_OK)
         return result;
     list = array_alloc_zeroed(count, sizeof *list);
-    if (!list) {
-        log_error(&device->log, "out of memory for %u Vulkan extensions", count);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!list)
+        return log_failure(&device->log, WHIT_ERROR_MEMORY,
+                           "out of memory for %u Vulkan extensions", count);
     VK_TRY(device, vkEnumerateInstanceExtensionProperties(layer, &count, list));
     for (uint32_t i = 0; i < count; ++i)
         for (uint32_t j = 0; j < name_count; ++j)
@@ -118,10 +117,9 @@ static whit_result find_validation(struct device *device)
     bool found = false;
     VK_TRY(device, vkEnumerateInstanceLayerProperties(&count, NULL));
     list = array_alloc_zeroed(count, sizeof *list);
-    if (!list) {
-        log_error(&device->log, "out of memory for %u Vulkan layers", count);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!list)
+        return log_failure(&device->log, WHIT_ERROR_MEMORY, "out of memory for %u Vulkan layers",
+                           count);
     VK_TRY(device, vkEnumerateInstanceLayerProperties(&count, list));
     for (uint32_t i = 0; i < count; ++i)
         found |= strcmp(list[i].layerName, validation_layer) == 0;
@@ -138,11 +136,10 @@ static whit_result check_loader(struct device *device)
     whit_result result = WHIT_OK;
     uint32_t version = 0;
     VK_TRY(device, vkEnumerateInstanceVersion(&version));
-    if (version < VK_API_VERSION_1_2) {
-        log_error(&device->log, "the Vulkan loader knows version %u.%u only, whit needs 1.2",
-                  VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version));
-        result = WHIT_ERROR_NO_DEVICE;
-    }
+    if (version < VK_API_VERSION_1_2)
+        result = log_failure(&device->log, WHIT_ERROR_NO_DEVICE,
+                             "the Vulkan loader knows version %u.%u only, whit needs 1.2",
+                             VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version));
 fail:
     return result;
 }
@@ -455,8 +452,8 @@ static whit_result list_physical(struct device *device, VkPhysicalDevice **handl
     *handles = array_alloc_zeroed(*count, sizeof **handles);
     *infos = array_alloc_zeroed(*count, sizeof **infos);
     if (!*handles || !*infos) {
-        log_error(&device->log, "out of memory for %u Vulkan devices", *count);
-        result = WHIT_ERROR_MEMORY;
+        result = log_failure(&device->log, WHIT_ERROR_MEMORY, "out of memory for %u Vulkan devices",
+                             *count);
         goto fail;
     }
     if (*count > 0)

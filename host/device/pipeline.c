@@ -29,9 +29,8 @@ static whit_result check_kernel(const struct pipeline *pipeline,
     if (params->spirv && params->spirv_bytes > 0 && params->spirv_bytes % 4 == 0 &&
         params->push_bytes % 4 == 0)
         return WHIT_OK;
-    log_error(&pipeline->device->log, "pipeline \"%s\": SPIR-V or push constants of a broken size",
-              pipeline->name);
-    return WHIT_ERROR_USAGE;
+    return log_usage(&pipeline->device->log,
+                     "pipeline \"%s\": SPIR-V or push constants of a broken size", pipeline->name);
 }
 
 static whit_result check_limits(const struct pipeline *pipeline)
@@ -40,15 +39,14 @@ static whit_result check_limits(const struct pipeline *pipeline)
     const VkPhysicalDeviceLimits *limits = &device->properties.limits;
     if (pipeline->push_bytes > limits->maxPushConstantsSize ||
         pipeline->storage_count > limits->maxPerStageDescriptorStorageBuffers ||
-        pipeline->texels_count > limits->maxPerStageDescriptorSampledImages) {
-        log_error(&device->log,
-                  "pipeline \"%s\": %u storage buffers, %u texel buffers and %u bytes of push "
-                  "constants; the device's limits are %u, %u and %u",
-                  pipeline->name, pipeline->storage_count, pipeline->texels_count,
-                  pipeline->push_bytes, limits->maxPerStageDescriptorStorageBuffers,
-                  limits->maxPerStageDescriptorSampledImages, limits->maxPushConstantsSize);
-        return WHIT_ERROR_DEVICE;
-    }
+        pipeline->texels_count > limits->maxPerStageDescriptorSampledImages)
+        return log_failure(
+            &device->log, WHIT_ERROR_DEVICE,
+            "pipeline \"%s\": %u storage buffers, %u texel buffers and %u bytes of push "
+            "constants; the device's limits are %u, %u and %u",
+            pipeline->name, pipeline->storage_count, pipeline->texels_count, pipeline->push_bytes,
+            limits->maxPerStageDescriptorStorageBuffers, limits->maxPerStageDescriptorSampledImages,
+            limits->maxPushConstantsSize);
     return WHIT_OK;
 }
 
@@ -58,10 +56,9 @@ static whit_result make_set_layout(struct pipeline *pipeline)
     whit_result result = WHIT_OK;
     VkDescriptorSetLayoutBinding *bindings =
         array_alloc_zeroed(pipeline->binding_count, sizeof *bindings);
-    if (!bindings) {
-        log_error(&device->log, "pipeline \"%s\": out of memory", pipeline->name);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!bindings)
+        return log_failure(&device->log, WHIT_ERROR_MEMORY, "pipeline \"%s\": out of memory",
+                           pipeline->name);
     uint32_t count = 0;
     for (uint32_t i = 0; i < pipeline->binding_count; ++i)
         if (pipeline->bindings[i] != BINDING_NONE)
@@ -249,8 +246,8 @@ static whit_result make_pipeline(struct pipeline *pipeline, const struct pipelin
         return result;
     VkSpecializationMapEntry *entries = array_alloc_zeroed(params->spec_count, sizeof *entries);
     if (!entries) {
-        log_error(&device->log, "pipeline \"%s\": out of memory", pipeline->name);
-        result = WHIT_ERROR_MEMORY;
+        result = log_failure(&device->log, WHIT_ERROR_MEMORY, "pipeline \"%s\": out of memory",
+                             pipeline->name);
         goto fail;
     }
     for (uint32_t i = 0; i < params->spec_count; ++i)
@@ -377,20 +374,17 @@ static whit_result check_buffers(const struct pipeline *pipeline, struct buffer 
                                  uint32_t count)
 {
     const whit_log *log = &pipeline->device->log;
-    if (count != pipeline->binding_count) {
-        log_error(log, "pipeline \"%s\": %u buffers for %u bindings", pipeline->name, count,
-                  pipeline->binding_count);
-        return WHIT_ERROR_USAGE;
-    }
+    if (count != pipeline->binding_count)
+        return log_usage(log, "pipeline \"%s\": %u buffers for %u bindings", pipeline->name, count,
+                         pipeline->binding_count);
     for (uint32_t i = 0; i < count; ++i) {
         enum binding_kind kind = pipeline->bindings[i];
         uint32_t use = kind == BINDING_TEXELS ? BUFFER_TEXELS : BUFFER_STORAGE;
         if (kind == BINDING_NONE ? pipeline->offered[i] || !buffers[i]
                                  : buffers[i] && (buffers[i]->uses & use))
             continue;
-        log_error(log, "pipeline \"%s\": binding %u cannot take buffer \"%s\"", pipeline->name, i,
-                  buffers[i] ? buffers[i]->name : "(none)");
-        return WHIT_ERROR_USAGE;
+        return log_usage(log, "pipeline \"%s\": binding %u cannot take buffer \"%s\"",
+                         pipeline->name, i, buffers[i] ? buffers[i]->name : "(none)");
     }
     return WHIT_OK;
 }
@@ -458,10 +452,8 @@ whit_result binding_set_create(struct pipeline *pipeline, struct buffer *const *
     if (result != WHIT_OK)
         return result;
     struct binding_set *set = array_alloc_zeroed(1, sizeof *set);
-    if (!set) {
-        log_error(&device->log, "out of memory for a binding set");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!set)
+        return log_failure(&device->log, WHIT_ERROR_MEMORY, "out of memory for a binding set");
     set->device = device;
     if (pipeline->storage_count + pipeline->texels_count > 0) {
         result = make_set(set, pipeline);

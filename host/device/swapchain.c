@@ -41,15 +41,13 @@ static whit_result choose_format(struct swapchain *swapchain)
             swapchain->swaps = known_formats[known].swaps;
         }
     }
-    if (!swapchain->info.format) {
-        log_error(&device->log, "the window takes no 8-bit format that whit knows");
-        return WHIT_ERROR_NO_DEVICE;
-    }
+    if (!swapchain->info.format)
+        return log_failure(&device->log, WHIT_ERROR_NO_DEVICE,
+                           "the window takes no 8-bit format that whit knows");
     swapchain->captures = (can.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_SRC_BIT) != 0;
-    if (!(can.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT)) {
-        log_error(&device->log, "the window's images cannot be copied to");
-        result = WHIT_ERROR_NO_DEVICE;
-    }
+    if (!(can.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT))
+        result = log_failure(&device->log, WHIT_ERROR_NO_DEVICE,
+                             "the window's images cannot be copied to");
 fail:
     return result;
 }
@@ -102,10 +100,8 @@ whit_result swapchain_create(struct device *device, const struct swapchain_param
 {
     *out = NULL;
     struct swapchain *swapchain = array_alloc_zeroed(1, sizeof *swapchain);
-    if (!swapchain) {
-        log_error(&device->log, "out of memory for a window");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!swapchain)
+        return log_failure(&device->log, WHIT_ERROR_MEMORY, "out of memory for a window");
     swapchain->device = device;
     swapchain->vsync = params->vsync;
     swapchain->info.draw_ms = -1.0;
@@ -259,11 +255,9 @@ static whit_result make_views(struct swapchain *swapchain)
     uint32_t count = 0;
     whit_result result = WHIT_OK;
     VK_TRY(device, vkGetSwapchainImagesKHR(device->vk, swapchain->vk, &count, NULL));
-    if (count > IMAGES_MAX) {
-        log_error(&device->log, "the window wants %u images; whit keeps %d at most", count,
-                  IMAGES_MAX);
-        return WHIT_ERROR_DEVICE;
-    }
+    if (count > IMAGES_MAX)
+        return log_failure(&device->log, WHIT_ERROR_DEVICE,
+                           "the window wants %u images; whit keeps %d at most", count, IMAGES_MAX);
     VK_TRY(device, vkGetSwapchainImagesKHR(device->vk, swapchain->vk, &count, images));
     swapchain->image_count = count;
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {

@@ -68,8 +68,8 @@ static whit_result write_stretched(const struct swapchain *swapchain, const uint
             result = buffer_write(swapchain->picture, y * row_bytes, row, row_bytes);
         }
     } else {
-        log_error(&swapchain->device->log, "out of memory for the window's picture");
-        result = WHIT_ERROR_MEMORY;
+        result = log_failure(&swapchain->device->log, WHIT_ERROR_MEMORY,
+                             "out of memory for the window's picture");
     }
     free(scratch);
     free(row);
@@ -281,10 +281,8 @@ whit_result swapchain_read(struct swapchain *swapchain, uint8_t *rgba, size_t by
     whit_result result = swapchain_wait(swapchain);
     if (result != WHIT_OK)
         return result;
-    if (!swapchain->captured || bytes < needed) {
-        log_error(&swapchain->device->log, "no copy of the window was kept");
-        return WHIT_ERROR_USAGE;
-    }
+    if (!swapchain->captured || bytes < needed)
+        return log_usage(&swapchain->device->log, "no copy of the window was kept");
     result = buffer_read(swapchain->capture, 0, rgba, needed);
     for (size_t i = 0; swapchain->swaps && i < needed; i += 4) {
         uint8_t blue = rgba[i];

@@ -54,13 +54,11 @@ whit_result costs_add(struct target *target, const struct gpu_chunk *chunk)
 whit_result renderer_read_costs(struct renderer *renderer, uint32_t kind, struct image *out)
 {
     const whit_renderer_params *params = &renderer->params;
-    if (!renderer->rendered || !params->count || kind >= RAY_KIND_COUNT) {
-        log_error(&renderer->log, "%s",
-                  !params->count        ? "costs were not asked for when the renderer was made"
-                  : !renderer->rendered ? RENDER_NO_PICTURE
-                                        : "there is no such kind of rays");
-        return WHIT_ERROR_USAGE;
-    }
+    if (!renderer->rendered || !params->count || kind >= RAY_KIND_COUNT)
+        return log_usage(&renderer->log, "%s",
+                         !params->count ? "costs were not asked for when the renderer was made"
+                         : !renderer->rendered ? RENDER_NO_PICTURE
+                                               : "there is no such kind of rays");
     whit_result result =
         image_init_logged(&renderer->log, out, params->width, params->height, COST_WORDS, true);
     size_t words = (size_t)params->width * params->height * COST_WORDS;

@@ -80,16 +80,12 @@ whit_result effects_check(const whit_log *log, const whit_renderer_params *param
         enum scene_effect effect = (enum scene_effect)i;
         bool adds = params->effects_added >> i & 1, removes = params->effects_removed >> i & 1;
         const char *name = i < SCENE_EFFECT_COUNT ? scene_effect_name(effect) : "";
-        if (adds && removes) {
-            log_error(log, "effects: `%s` is both added and left out", name);
-            return WHIT_ERROR_USAGE;
-        }
+        if (adds && removes)
+            return log_usage(log, "effects: `%s` is both added and left out", name);
         if ((adds && (!name[0] || !render_effect_can_add(effect))) ||
-            (removes && (!name[0] || !render_effect_can_remove(effect)))) {
-            log_error(log, "effects: number %u (`%s`) cannot be %s", i, name,
-                      adds ? "added" : "left out");
-            return WHIT_ERROR_USAGE;
-        }
+            (removes && (!name[0] || !render_effect_can_remove(effect))))
+            return log_usage(log, "effects: number %u (`%s`) cannot be %s", i, name,
+                             adds ? "added" : "left out");
     }
     return WHIT_OK;
 }

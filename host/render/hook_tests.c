@@ -85,10 +85,9 @@ whit_result renderer_run_tests(struct renderer *renderer, whit_check_result *res
     struct buffer *found = NULL;
     struct pass pass = {0};
     double start_ms = clock_ms();
-    if (!shader || !shader->codes[HOOK_KERNEL_TEST].words) {
-        log_error(&renderer->log, "there are no tests of a shader, or they were not compiled");
-        return WHIT_ERROR_USAGE;
-    }
+    if (!shader || !shader->codes[HOOK_KERNEL_TEST].words)
+        return log_usage(&renderer->log,
+                         "there are no tests of a shader, or they were not compiled");
     whit_result result =
         buffer_create(renderer->device, count_rows(&shader->tests) * sizeof(struct check_row),
                       BUFFER_STORAGE | BUFFER_HOST, "checks", &found);

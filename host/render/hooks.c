@@ -117,8 +117,8 @@ whit_result hooks_check_step_aov(const struct renderer *renderer, uint32_t step_
     uint32_t count = hooks_aov_count(&renderer->picture);
     if (step_aov <= count)
         return WHIT_OK;
-    log_error(&renderer->log, "steps of the aov number %u: the shader has %u", step_aov, count);
-    return WHIT_ERROR_USAGE;
+    return log_usage(&renderer->log, "steps of the aov number %u: the shader has %u", step_aov,
+                     count);
 }
 
 whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders)
@@ -127,17 +127,14 @@ whit_result hooks_read_sliders(struct renderer *renderer, const char *sliders)
     float values[SLIDERS_MAX]; /* those of the renderer stay after an error */
     if (!renderer->params.shader && (!sliders || !sliders[0] || renderer->params.skip_sliders))
         return WHIT_OK;
-    if (!renderer->params.shader) {
-        log_error(&renderer->log, "sliders are set, and there is no shader that has any");
-        return WHIT_ERROR_USAGE;
-    }
+    if (!renderer->params.shader)
+        return log_usage(&renderer->log, "sliders are set, and there is no shader that has any");
     if (shader_sliders_read(renderer->params.shader, sliders, renderer->params.skip_sliders, values,
                             why, sizeof why)) {
         memcpy(renderer->sliders, values, sizeof values);
         return WHIT_OK;
     }
-    log_error(&renderer->log, "%s", why);
-    return WHIT_ERROR_USAGE;
+    return log_usage(&renderer->log, "%s", why);
 }
 
 /* Buffers are made for the number of aovs. */
@@ -217,11 +214,10 @@ whit_result hooks_find_material(struct renderer *renderer)
     uint32_t index = scene_find_worn(renderer->scene, box->material);
     if (index == SCENE_NONE)
         index = scene_find_worn(renderer->scene, "");
-    if (index == SCENE_NONE) {
-        log_error(&renderer->log, "%s:%u: the scene has no material for the shape",
-                  shader->text.files[box->file].name, box->line);
-        return WHIT_ERROR_INPUT;
-    }
+    if (index == SCENE_NONE)
+        return log_failure(&renderer->log, WHIT_ERROR_INPUT,
+                           "%s:%u: the scene has no material for the shape",
+                           shader->text.files[box->file].name, box->line);
     const float *passes = renderer->scene->materials[index].transmission;
     bool glass = passes[0] > 0.0f || passes[1] > 0.0f || passes[2] > 0.0f;
     renderer->frame.shape_material = index | (glass ? SHAPE_IS_GLASS : 0);

@@ -111,10 +111,8 @@ whit_result renderer_get_kernel(const struct renderer *renderer, whit_kernel_inf
     stages_job_init(target, &own, true, few, &job);
     bool counted = count_set(&job, &own_info, &largest);
     stages_job_init(target, &general, false, few, &job);
-    if (!counted || !count_set(&job, &general_info, &general_largest)) {
-        log_error(&renderer->log, "the kernels cannot be specialized");
-        return WHIT_ERROR_DEVICE;
-    }
+    if (!counted || !count_set(&job, &general_info, &general_largest))
+        return log_failure(&renderer->log, WHIT_ERROR_DEVICE, "the kernels cannot be specialized");
     *info = (whit_kernel_info){
         .instructions = own_info.instructions,
         .largest_instructions = largest,

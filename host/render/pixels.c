@@ -76,10 +76,9 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     uint64_t rows = max_pixels / width / 8 * 8;
     uint32_t wanted = pixels_blocks_across(height) * 8;
     p->band_rows = rows < wanted ? (uint32_t)rows : wanted;
-    if (p->band_rows == 0) {
-        log_error(&renderer->log, "width %u is over what one buffer of the device holds", width);
-        return WHIT_ERROR_DEVICE;
-    }
+    if (p->band_rows == 0)
+        return log_failure(&renderer->log, WHIT_ERROR_DEVICE,
+                           "width %u is over what one buffer of the device holds", width);
     uint64_t frame_slots = (uint64_t)pixels_blocks_across(width) * (p->band_rows / 8) * 64;
     p->chunk_slots = (uint32_t)(slots < frame_slots ? slots : frame_slots);
     uint64_t pixels = (uint64_t)width * p->band_rows;

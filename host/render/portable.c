@@ -239,8 +239,8 @@ whit_result portable_choose(const whit_log *log, struct device *device, struct p
     out->own_comparison = found.own_comparison && !is_off("WHIT_OWN_COMPARISON");
     if (found.keeps_denormals && found.rounds_nearest)
         return WHIT_OK;
-    log_error(log, "%s %s, so that no picture of it is portable", device_get_info(device)->name,
-              found.rounds_nearest ? "takes floats below 2^-126 for 0"
-                                   : "does not round sums and products to nearest");
-    return WHIT_ERROR_DEVICE;
+    return log_failure(log, WHIT_ERROR_DEVICE, "%s %s, so that no picture of it is portable",
+                       device_get_info(device)->name,
+                       found.rounds_nearest ? "takes floats below 2^-126 for 0"
+                                            : "does not round sums and products to nearest");
 }

@@ -337,9 +337,8 @@ static whit_result order_rays(const struct renderer *renderer, const struct reco
     if (!branches || !report->rays) {
         result = render_no_memory(renderer, "probed rays");
     } else if (!count_branches(records, count, branches)) {
-        log_error(&renderer->log, "the rays of pixel %u,%u do not make a tree", report->x,
-                  report->y);
-        result = WHIT_ERROR_STATUS;
+        result = log_failure(&renderer->log, WHIT_ERROR_STATUS,
+                             "the rays of pixel %u,%u do not make a tree", report->x, report->y);
     } else if (count > 0) {
         place_tree(records, 0, branches, report->rays, &placed);
     }
@@ -355,14 +354,12 @@ static whit_result check(const struct renderer *renderer, uint32_t x, uint32_t y
     if (x < params->width && y < params->height) {
         if (!renderer->between_times && !renderer->between_views)
             return WHIT_OK;
-        log_error(&renderer->log,
-                  "its time or view could not be set, so there is nothing to probe");
-        return WHIT_ERROR_USAGE;
+        return log_usage(&renderer->log,
+                         "its time or view could not be set, so there is nothing to probe");
     }
-    log_error(&renderer->log,
-              "pixel %u,%u is outside of the picture, whose pixels are 0,0 to %u,%u", x, y,
-              params->width - 1, params->height - 1);
-    return WHIT_ERROR_USAGE;
+    return log_usage(&renderer->log,
+                     "pixel %u,%u is outside of the picture, whose pixels are 0,0 to %u,%u", x, y,
+                     params->width - 1, params->height - 1);
 }
 
 whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, uint32_t max,

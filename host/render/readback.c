@@ -164,10 +164,8 @@ whit_result readback_band(struct renderer *renderer, const struct progress *prog
 static whit_result begin_read(const struct renderer *renderer, uint32_t channels, bool integers,
                               struct image *out)
 {
-    if (!renderer->rendered) {
-        log_error(&renderer->log, RENDER_NO_PICTURE);
-        return WHIT_ERROR_USAGE;
-    }
+    if (!renderer->rendered)
+        return log_usage(&renderer->log, RENDER_NO_PICTURE);
     return image_init_logged(&renderer->log, out, renderer->params.width, views_rows(renderer),
                              channels, integers);
 }
@@ -221,32 +219,26 @@ whit_result renderer_borrow_color(struct renderer *renderer, struct image *out)
 
 whit_result renderer_read_distances(struct renderer *renderer, struct image *out)
 {
-    if (!renderer->views.count) {
-        log_error(&renderer->log, "distances are kept of views that are drawn together");
-        return WHIT_ERROR_USAGE;
-    }
+    if (!renderer->views.count)
+        return log_usage(&renderer->log, "distances are kept of views that are drawn together");
     return read_whole(renderer, PLANE_DISTANCES, out);
 }
 
 /* As read_whole, for what renderers with params.color_only do not keep. */
 static whit_result read_data(struct renderer *renderer, enum plane_name name, struct image *out)
 {
-    if (!pixels_have_data(&renderer->picture)) {
-        log_error(&renderer->log, "the renderer keeps colours alone (color_only)");
-        return WHIT_ERROR_USAGE;
-    }
+    if (!pixels_have_data(&renderer->picture))
+        return log_usage(&renderer->log, "the renderer keeps colours alone (color_only)");
     return read_whole(renderer, name, out);
 }
 
 whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
 {
-    if (renderer->params.sampling.first) {
-        log_error(&renderer->log,
-                  "hit identities are those of the first sample, which samples "
-                  "from %u on do not have",
-                  renderer->params.sampling.first);
-        return WHIT_ERROR_USAGE;
-    }
+    if (renderer->params.sampling.first)
+        return log_usage(&renderer->log,
+                         "hit identities are those of the first sample, which samples "
+                         "from %u on do not have",
+                         renderer->params.sampling.first);
     return read_data(renderer, PLANE_IDS, out);
 }
 
@@ -270,11 +262,9 @@ whit_result readback_aov_row(const struct renderer *renderer, uint32_t index, ui
 whit_result renderer_read_aov(struct renderer *renderer, uint32_t index, struct image *out)
 {
     uint32_t all = hooks_aov_count(&renderer->picture), width = renderer->params.width;
-    if (index >= all) {
-        log_error(&renderer->log, "the shader has %u functions beside the colour, no number %u",
-                  all, index);
-        return WHIT_ERROR_USAGE;
-    }
+    if (index >= all)
+        return log_usage(&renderer->log,
+                         "the shader has %u functions beside the colour, no number %u", all, index);
     whit_result result = begin_read(renderer, 4, false, out);
     bool late = readback_is_late(renderer);
     float *row = result == WHIT_OK && late ? malloc((size_t)width * all * 4 * sizeof *row) : NULL;
@@ -296,10 +286,9 @@ whit_result renderer_read_aov(struct renderer *renderer, uint32_t index, struct 
 
 whit_result renderer_read_cuts(struct renderer *renderer, struct image *out)
 {
-    if (renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE) {
-        log_error(&renderer->log, "weights that were cut are not kept with adaptive samples");
-        return WHIT_ERROR_USAGE;
-    }
+    if (renderer->params.sampling.kind == WHIT_SAMPLING_ADAPTIVE)
+        return log_usage(&renderer->log,
+                         "weights that were cut are not kept with adaptive samples");
     return read_data(renderer, PLANE_CUTS, out);
 }
 

@@ -21,8 +21,7 @@
 
 whit_result render_no_memory(const struct renderer *renderer, const char *what)
 {
-    log_error(&renderer->log, "out of memory for %s", what);
-    return WHIT_ERROR_MEMORY;
+    return log_failure(&renderer->log, WHIT_ERROR_MEMORY, "out of memory for %s", what);
 }
 
 bool renderer_bounces(const struct renderer *renderer)
@@ -94,11 +93,10 @@ whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct
         result = hooks_find_material(renderer);
     if (result == WHIT_OK && !(renderer->worn = scene_worn_materials(renderer->scene)))
         result = render_no_memory(renderer, "materials");
-    if (renderer->scene->pictures_dropped) {
-        log_error(log, "%s: its textures were dropped, no further renderer can be made from it",
-                  renderer->scene->name);
-        result = WHIT_ERROR_USAGE;
-    }
+    if (renderer->scene->pictures_dropped)
+        result =
+            log_usage(log, "%s: its textures were dropped, no further renderer can be made from it",
+                      renderer->scene->name);
     if (result == WHIT_OK)
         result = scene_pose_init(renderer->scene, renderer->params.time_s, &renderer->pose);
     if (result == WHIT_OK)

@@ -353,11 +353,10 @@ static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile
         return result;
     while (left > 0) {
         result = done > 0 ? render_stop_asked(renderer, progress) : WHIT_OK;
-        if (result == WHIT_OK && end >= queues->generation_count) {
-            log_error(&renderer->log, "a ray passes more than %u surfaces",
-                      queues->generation_count - 1);
-            result = WHIT_ERROR_STATUS;
-        }
+        if (result == WHIT_OK && end >= queues->generation_count)
+            result =
+                log_failure(&renderer->log, WHIT_ERROR_STATUS, "a ray passes more than %u surfaces",
+                            queues->generation_count - 1);
         if (result == WHIT_OK)
             result = trace_generations(&run, done, end);
         *longest_ms = fmax(*longest_ms, run.longest_ms);
@@ -394,13 +393,11 @@ whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
         target_drop_pixels(target); /* queues are missing: the next picture makes all anew */
         return result;
     }
-    if (chunk->block_count == 1) {
-        log_error(&target->renderer->log,
-                  "there is no room for the rays of %d pixels at depth %u and bailout %g",
-                  RENDER_BLOCK_PIXELS, target->renderer->params.depth,
-                  target->renderer->params.bailout);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (chunk->block_count == 1)
+        return log_failure(&target->renderer->log, WHIT_ERROR_MEMORY,
+                           "there is no room for the rays of %d pixels at depth %u and bailout %g",
+                           RENDER_BLOCK_PIXELS, target->renderer->params.depth,
+                           target->renderer->params.bailout);
     uint32_t end = chunk->first_block + chunk->block_count;
     uint32_t max = (chunk->block_count + 1) / 2;
     struct gpu_chunk part = *chunk;

@@ -443,11 +443,9 @@ struct progress render_progress(const struct renderer *renderer)
 whit_result render_all(struct renderer *renderer)
 {
     renderer->rendered = false;
-    if (renderer->between_times || renderer->between_views) {
-        log_error(&renderer->log,
-                  "its time or view could not be set, so there is nothing to render");
-        return WHIT_ERROR_USAGE;
-    }
+    if (renderer->between_times || renderer->between_views)
+        return log_usage(&renderer->log,
+                         "its time or view could not be set, so there is nothing to render");
     readback_drop_images(renderer);
     costs_clear(renderer);
     whit_result result = params_check_loops(renderer);
@@ -488,10 +486,10 @@ whit_result params_check_loops(const struct renderer *renderer)
     if (!accel->no_trees || !device_get_limits(renderer->device)->loop_limited ||
         rays * accel->iterations <= ACCEL_ITERATIONS_MAX)
         return WHIT_OK;
-    log_error(&renderer->log,
-              "%s: without trees every ray tests %llu primitives, which is too much where each hit "
-              "takes %llu rays at once: fewer --light-samples are possible",
-              scene->name, (unsigned long long)(scene->triangle_total + scene->sphere_total),
-              (unsigned long long)rays);
-    return WHIT_ERROR_USAGE;
+    return log_usage(
+        &renderer->log,
+        "%s: without trees every ray tests %llu primitives, which is too much where each hit "
+        "takes %llu rays at once: fewer --light-samples are possible",
+        scene->name, (unsigned long long)(scene->triangle_total + scene->sphere_total),
+        (unsigned long long)rays);
 }

@@ -163,13 +163,10 @@ static whit_result read_hits(const struct renderer *renderer, bool any, uint64_t
 whit_result renderer_trace(struct renderer *renderer, const struct gpu_ray *rays, uint64_t count,
                            bool any, struct gpu_hit *hits, struct gpu_cost *costs)
 {
-    if (costs && !renderer->params.count) {
-        log_error(&renderer->log, "costs of rays: not asked for when the renderer was made");
-        return WHIT_ERROR_USAGE;
-    }
+    if (costs && !renderer->params.count)
+        return log_usage(&renderer->log, "costs of rays: not asked for when the renderer was made");
     if (renderer->between_times) { /* trees and root may be of different times */
-        log_error(&renderer->log, "its time could not be set, so there is nothing to trace");
-        return WHIT_ERROR_USAGE;
+        return log_usage(&renderer->log, "its time could not be set, so there is nothing to trace");
     }
     renderer->trace.device_ms = 0.0;
     renderer->trace.together = 0;

@@ -52,8 +52,7 @@ void views_finish(struct views *views)
 
 static whit_result refuse(const struct renderer *renderer, const char *what)
 {
-    log_error(&renderer->log, "views of many cameras are not drawn with %s", what);
-    return WHIT_ERROR_USAGE;
+    return log_usage(&renderer->log, "views of many cameras are not drawn with %s", what);
 }
 
 static whit_result check(const struct renderer *renderer, uint32_t count)
@@ -73,9 +72,8 @@ static whit_result check(const struct renderer *renderer, uint32_t count)
     if (count > 0 && rows <= INT32_MAX &&
         rows / 8 * pixels_blocks_across(params->width) <= UINT32_MAX)
         return WHIT_OK;
-    log_error(&renderer->log, "%u views of %u x %u pixels: %s", count, params->width,
-              params->height, count ? "too many for one call" : "there must be one");
-    return WHIT_ERROR_USAGE;
+    return log_usage(&renderer->log, "%u views of %u x %u pixels: %s", count, params->width,
+                     params->height, count ? "too many for one call" : "there must be one");
 }
 
 /* The values of the frame, for the camera that it was filled for. */
