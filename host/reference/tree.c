@@ -232,16 +232,13 @@ static struct dvec3 follow(struct tracer *tracer, struct ray *ray, const struct 
     const struct reference *reference = tracer->reference;
     ray->node = record_ray(tracer, ray, WHIT_PROBE_MISSED);
     ray->weight = d3_times(ray->weight, media_transmittance(reference, &ray->media, hit->t));
-    bool met = hit->primitive != HIT_NONE;
+    bool absorbed = d3_largest(ray->weight) < DBL_MIN;
+    if (!absorbed && hit->primitive != HIT_NONE)
+        return shade_hit(tracer, ray, hit);
     struct dvec3 radiance = d3_all(0.0);
-    if (d3_largest(ray->weight) < DBL_MIN)
-        record_end(tracer, ray, WHIT_PROBE_ABSORBED, radiance);
-    else if (met)
-        radiance = shade_hit(tracer, ray, hit);
-    else
+    if (!absorbed)
         radiance = d3_times(light_sky(reference, ray->dir), ray->weight);
-    if (!met && !(d3_largest(ray->weight) < DBL_MIN))
-        record_end(tracer, ray, WHIT_PROBE_MISSED, radiance);
+    record_end(tracer, ray, absorbed ? WHIT_PROBE_ABSORBED : WHIT_PROBE_MISSED, radiance);
     return radiance;
 }
 

@@ -44,7 +44,7 @@ static whit_result check_nodes(struct scene *scene)
     return WHIT_OK;
 }
 
-static void check_channels(struct scene *scene)
+static whit_result check_channels(struct scene *scene)
 {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < scene->channel_count; ++i) {
@@ -62,6 +62,7 @@ static void check_channels(struct scene *scene)
                    "finite",
                    scene->channel_count - kept);
     scene->channel_count = kept;
+    return WHIT_OK;
 }
 
 static bool mend(float *value, float min, float max, float otherwise)
@@ -177,6 +178,14 @@ static whit_result check_mesh(struct scene *scene, uint32_t index)
             return refuse(scene, "mesh", index, "a group reaches past its triangles");
     }
     return freeze_clean_mesh(scene, index);
+}
+
+static whit_result check_meshes(struct scene *scene)
+{
+    whit_result result = WHIT_OK;
+    for (uint32_t i = 0; result == WHIT_OK && i < scene->mesh_count; ++i)
+        result = check_mesh(scene, i);
+    return result;
 }
 
 /* World matrices by what stands still, to find instances that cannot be placed at any time: what
@@ -399,7 +408,7 @@ static whit_result check_cameras(struct scene *scene)
     return WHIT_OK;
 }
 
-static void check_environment(struct scene *scene)
+static whit_result check_environment(struct scene *scene)
 {
     struct scene_environment *sky = &scene->environment;
     const float huge = 1e30f;
@@ -419,31 +428,14 @@ static void check_environment(struct scene *scene)
     if (count)
         scene_note(scene, SCENE_NOTE_WARNING,
                    "environment: %u values not finite or negative were mended", count);
+    return WHIT_OK;
 }
 
-static whit_result check_all(struct scene *scene)
-{
-    whit_result result = check_nodes(scene);
-    if (result == WHIT_OK)
-        check_channels(scene);
-    if (result == WHIT_OK)
-        result = check_textures(scene);
-    if (result == WHIT_OK)
-        result = check_materials(scene);
-    for (uint32_t i = 0; result == WHIT_OK && i < scene->mesh_count; ++i)
-        result = check_mesh(scene, i);
-    if (result == WHIT_OK)
-        result = check_instances(scene);
-    if (result == WHIT_OK)
-        result = drop_unused_meshes(scene);
-    if (result == WHIT_OK)
-        result = check_lights(scene);
-    if (result == WHIT_OK)
-        result = check_cameras(scene);
-    if (result == WHIT_OK)
-        check_environment(scene);
-    return result;
-}
+/* In this order: each relies on those before it. */
+static whit_result (*const checks[])(struct scene *scene) = {
+    check_nodes,     check_channels,     check_textures, check_materials, check_meshes,
+    check_instances, drop_unused_meshes, check_lights,   check_cameras,   check_environment,
+};
 
 /* Logs the lack of memory once, whichever step ran out of it; passes `result` on. */
 static whit_result no_memory(const struct scene *scene, whit_result result)
@@ -457,7 +449,9 @@ whit_result scene_freeze(struct scene *scene)
 {
     if (scene->frozen)
         return WHIT_OK;
-    whit_result result = check_all(scene);
+    whit_result result = WHIT_OK;
+    for (size_t i = 0; result == WHIT_OK && i < sizeof checks / sizeof *checks; ++i)
+        result = checks[i](scene);
     return result == WHIT_OK ? freeze_complete(scene) : no_memory(scene, result);
 }
 
