@@ -143,18 +143,23 @@ TEST(vanishing_scale_keeps_an_inverse)
     assert_near(matrix_at(scene, 0.5).m[0], 0.5);
 }
 
-/* Six nested scales of zero, each raised to 1e-6, have no inverse in floats. */
-TEST(nested_scales_of_zero_hide_an_instance)
+/* A box at x = 7 below six nodes, each scaled from one of these scales to the other. */
+static struct scene *nested_scene(const float scales[6])
 {
-    own_scene *scene = scene_begin(NULL, "test");
+    struct scene *scene = scene_begin(NULL, "test");
     uint32_t node = SCENE_NONE;
     for (uint32_t i = 0; i < 6; ++i) {
         node = scene_put_node(scene, node, i == 0 ? 7 : 0, 0, 0);
-        scene_put_channel(scene, node, SCENE_PATH_SCALE, 2, (float[]){0, 1},
-                          (float[]){0, 0, 0, 1, 1, 1});
+        scene_put_channel(scene, node, SCENE_PATH_SCALE, 2, (float[]){0, 1}, scales);
     }
     scene_put(scene, mesh_box(2, 2, 2), &(struct put){.node = &node});
-    scene_ready(scene);
+    return scene_ready(scene);
+}
+
+/* Six nested scales of zero, each raised to 1e-6, have no inverse in floats. */
+TEST(nested_scales_of_zero_hide_an_instance)
+{
+    own_scene *scene = nested_scene((float[]){0, 0, 0, 1, 1, 1});
     struct affine hidden = matrix_at(scene, 0.0);
     assert_near(hidden.m[3], 7.0);
     assert_true(hidden.m[0] > 0.0 && hidden.m[0] < 1e-9 && scene_can_place(&hidden));
@@ -174,15 +179,7 @@ TEST(flat_instances_are_never_hidden)
         assert_int_equal(scene->instance_count, 0);
         assert_true(scene_noted(scene, "`box` dropped: its transform has no inverse"));
     }
-    own_scene *folded = scene_begin(NULL, "test");
-    uint32_t node = SCENE_NONE;
-    for (uint32_t i = 0; i < 6; ++i) {
-        node = scene_put_node(folded, node, 0, 0, 0);
-        scene_put_channel(folded, node, SCENE_PATH_SCALE, 2, (float[]){0, 1},
-                          (float[]){1, 1, 1, 1, 1, 0});
-    }
-    scene_put(folded, mesh_box(2, 2, 2), &(struct put){.node = &node});
-    scene_ready(folded);
+    own_scene *folded = nested_scene((float[]){1, 1, 1, 1, 1, 0});
     struct scene_pose pose;
     assert_near(matrix_at(folded, 0.0).m[10], 1.0);
     assert_int_equal(scene_pose_init(folded, 1.0, &pose), WHIT_ERROR_INPUT);

@@ -242,34 +242,25 @@ TEST(long_triangles_of_a_part_are_in_the_picture)
     assert_shown(camera, forward, (const float[]){0, 2, 0}, 1.0);
 }
 
-/* The picture has room for an object that flies away later. */
+/* The picture has room for an object that flies away later, also where it is far away only at one
+   key, between even steps, or before the time 0. */
 TEST(animations_stay_in_the_picture)
 {
-    own_scene *scene = empty_scene();
-    uint32_t flies = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
-    scene_put(scene, walls((const float[]){1, 1, 1}, 0, true), &(struct put){.node = &flies});
-    scene_put_channel(scene, flies, SCENE_PATH_TRANSLATION, 2, (float[]){0, 2},
-                      (float[]){0, 0, 0, 0, 20, 0});
-    double forward[3];
-    const struct scene_camera *camera = camera_of(scene, forward);
-    assert_shown(camera, forward, (const float[]){1, 21, 1}, 0.95);
-    assert_shown(camera, forward, (const float[]){1, -1, 1}, 0.95);
-}
-
-/* ... also where it is far away only at one key, between even steps, or before the time 0. */
-TEST(animations_stay_in_the_picture_at_keys)
-{
-    const float times[2][4] = {{0, 0.1f, 0.2f, 16}, {-4, -3, -2, -1}};
-    for (uint32_t i = 0; i < 2; ++i) {
+    static const struct {
+        uint32_t keys;
+        float times[4];
+    } rows[] = {{2, {0, 2}}, {4, {0, 0.1f, 0.2f, 16}}, {4, {-4, -3, -2, -1}}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
         own_scene *scene = empty_scene();
         uint32_t flies = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
         scene_put(scene, walls((const float[]){1, 1, 1}, 0, true), &(struct put){.node = &flies});
-        scene_put_channel(scene, flies, SCENE_PATH_TRANSLATION, 4, times[i],
+        scene_put_channel(scene, flies, SCENE_PATH_TRANSLATION, rows[i].keys, rows[i].times,
                           (float[]){0, 0, 0, 0, 20, 0, 0, 0, 0, 0, 0, 0});
         double forward[3];
         const struct scene_camera *camera = camera_of(scene, forward);
         assert_shown(camera, forward, (const float[]){1, 21, 1}, 0.95);
-        assert_true((double)scene->time_end_s == (double)times[i][3]);
+        assert_shown(camera, forward, (const float[]){1, -1, 1}, 0.95);
+        assert_true(scene->time_end_s == rows[i].times[rows[i].keys - 1]);
     }
 }
 
