@@ -278,7 +278,6 @@ static void save_picture(struct view *view)
                                     : "the picture is not whole yet");
         return;
     }
-    view_free_name("png", path);
     const struct settings drawn = view_drawn(view, &frame->settings);
     const struct view_shot shot = {.settings = &drawn,
                                    .color = frame->color,
@@ -286,7 +285,7 @@ static void save_picture(struct view *view)
                                    .shader = frame->shader ? frame->shader->shader : NULL,
                                    .device = &frame->device,
                                    .stats = frame->refined ? &frame->all : &frame->stats};
-    if (view->params->save(&shot, path) == WHIT_OK)
+    if (view_free_name("png", path) && view->params->save(&shot, path) == WHIT_OK)
         view_say(view, "saved as %s", path);
     else
         view_say(view, "%s could not be saved", path);

@@ -17,13 +17,14 @@ static const double FPS_MIN = 1.0, FPS_MAX = 240.0;
 
 /* ---- Files of settings ---- */
 
-void view_free_name(const char *extension, char name[VIEW_FREE_NAME])
+bool view_free_name(const char *extension, char name[VIEW_FREE_NAME])
 {
     for (int i = 1; i <= NAMES_LAST; ++i) {
         snprintf(name, VIEW_FREE_NAME, "whit-%04d.%.8s", i, extension);
         if (!file_exists(name))
-            return;
+            return true;
     }
+    return false;
 }
 
 static void list_states(struct panels *panels)
@@ -57,8 +58,7 @@ static whit_result write_state(const struct view *view, const char *path)
 void panels_save(struct view *view)
 {
     char path[VIEW_FREE_NAME];
-    view_free_name("view", path);
-    if (write_state(view, path) == WHIT_OK)
+    if (view_free_name("view", path) && write_state(view, path) == WHIT_OK)
         view_say(view, "saved as %s", path);
     else
         view_say(view, "%s could not be saved", path);

@@ -34,8 +34,8 @@ void panels_step(struct view *view);
 void panels_save(struct view *view);
 /* Loads a file of panels_save; the scene stays. Shows a message if it cannot be read. */
 void panels_load(struct view *view, const char *path);
-/* Makes the first name like "whit-0001.png" that no file has, in the folder where whit was
-   started. */
-void view_free_name(const char *extension, char name[VIEW_FREE_NAME]);
+/* Makes the first name like "whit-0001.png" that no file has, in the folder where whit was started.
+   False: files have all of them, up to whit-9999. */
+bool view_free_name(const char *extension, char name[VIEW_FREE_NAME]);
 
 #endif

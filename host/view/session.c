@@ -262,16 +262,11 @@ whit_result session_open(struct session *session, const struct settings *setting
 static whit_result draw_step(struct session *session, const whit_renderer_params *params)
 {
     bool takes = whit_renderer_takes_shader(session->renderer, params->shader);
-    if (!takes) {
+    whit_result result = takes ? whit_renderer_set_shader(session->renderer, params) : WHIT_OK;
+    if (!takes || result != WHIT_OK) {
         whit_renderer_destroy(session->renderer);
         session->renderer = NULL;
-        return warm_up(session, false);
-    }
-    whit_result result = whit_renderer_set_shader(session->renderer, params);
-    if (result != WHIT_OK) {
-        whit_renderer_destroy(session->renderer);
-        session->renderer = NULL;
-        return result;
+        return takes ? result : warm_up(session, false);
     }
     result = whit_renderer_render(session->renderer);
     return result == WHIT_ERROR_CANCELLED ? WHIT_OK : result;

@@ -156,6 +156,14 @@ END
 last:
 END
     check "of all words one is another ($(value last words))" test "$(value last words | grep -c -e "--traversal basic .*--numerics")" -eq 1
+    # A file that is there stays, also where no number is left.
+    seq -f 'whit-%04g.view' 9999 | xargs touch
+    rm whit-0007.view
+    play "the last number" "$CUBE" --size 96x64 <<END
+free: press Ctrl+S | toast = saved as whit-0007.view
+none: press Ctrl+S | toast = whit-9999.view could not be saved
+END
+    check "the last file is as it was" test ! -s whit-9999.view
 fi
 
 if part 0 2; then
