@@ -35,6 +35,10 @@ void bench_file(const struct bench *bench, const char *name, char path[BENCH_PAT
 WHIT_CHECK whit_result bench_write(const struct bench *bench, const char *name, const void *data,
                                    size_t bytes);
 
+/* states.c: the member `key` of the state `name` in a file of states, which `whit view --replay`
+   prints; a new reference, NULL: none. */
+json_t *states_find(const char *path, const char *name, const char *key);
+
 struct bench_scene {
     whit_scene *scene;
     whit_scene_info info;

@@ -4,7 +4,6 @@
 
 #include "base/path.h"
 #include "bench/process.h"
-#include "bench/states.h"
 #include "bench/table.h"
 #include "whit/whit_program.h"
 

@@ -15,62 +15,48 @@ static double frame_ms(const struct table *table, const struct bench_case *c)
     return sample_of(&c->frame).median * pixels / ((double)c->width * c->height);
 }
 
-static void put_case(struct table *table, const struct bench_case *c)
-{
-    table_cell(table, "%s", c->label);
-}
+enum cell { CASE, SCENE, REPORT_S, REPORT_FPS, BUILD_MS, FPS, FRAME_MS, SAH, VISITS, TESTS, DEPTH };
 
-static void put_scene(struct table *table, const struct bench_case *c)
+static void put_cell(struct table *table, const struct bench_case *c, enum cell cell)
 {
-    table_cell(table, "%s, %s", c->scene, c->label);
-}
-
-static void put_report_s(struct table *table, const struct bench_case *c)
-{
-    table_cell(table, "%g", c->report_s);
-}
-
-static void put_report_fps(struct table *table, const struct bench_case *c)
-{
-    table_cell(table, c->report_fps > 0.0 ? "%g" : "-", c->report_fps);
-}
-
-static void put_build(struct table *table, const struct bench_case *c)
-{
-    table_ms(table, &c->build);
-}
-
-static void put_fps(struct table *table, const struct bench_case *c)
-{
-    table_cell(table, c->shrink ? "%.3g (estimated)" : "%.1f", 1e3 / frame_ms(table, c));
-}
-
-static void put_frame(struct table *table, const struct bench_case *c)
-{
-    if (c->shrink)
-        table_cell(table, "%.0f (estimated)", frame_ms(table, c));
-    else
-        table_ms(table, &c->frame);
-}
-
-static void put_sah(struct table *table, const struct bench_case *c)
-{
-    table_cell(table, "%.2f", c->accel_info.sah_cost);
-}
-
-static void put_visits(struct table *table, const struct bench_case *c)
-{
-    table_cell(table, "%.2f", case_visits(c));
-}
-
-static void put_triangles(struct table *table, const struct bench_case *c)
-{
-    table_cell(table, "%.2f", case_triangle_tests(c));
-}
-
-static void put_depth(struct table *table, const struct bench_case *c)
-{
-    table_cell(table, "%.2f, %u", case_depth_mean(c), c->counted.costs[WHIT_RAY_PRIMARY].depth);
+    switch (cell) {
+    case CASE:
+        table_cell(table, "%s", c->label);
+        break;
+    case SCENE:
+        table_cell(table, "%s, %s", c->scene, c->label);
+        break;
+    case REPORT_S:
+        table_cell(table, "%g", c->report_s);
+        break;
+    case REPORT_FPS:
+        table_cell(table, c->report_fps > 0.0 ? "%g" : "-", c->report_fps);
+        break;
+    case BUILD_MS:
+        table_ms(table, &c->build);
+        break;
+    case FPS:
+        table_cell(table, c->shrink ? "%.3g (estimated)" : "%.1f", 1e3 / frame_ms(table, c));
+        break;
+    case FRAME_MS:
+        if (c->shrink)
+            table_cell(table, "%.0f (estimated)", frame_ms(table, c));
+        else
+            table_ms(table, &c->frame);
+        break;
+    case SAH:
+        table_cell(table, "%.2f", c->accel_info.sah_cost);
+        break;
+    case VISITS:
+        table_cell(table, "%.2f", case_visits(c));
+        break;
+    case TESTS:
+        table_cell(table, "%.2f", case_triangle_tests(c));
+        break;
+    case DEPTH:
+        table_cell(table, "%.2f, %u", case_depth_mean(c), c->counted.costs[WHIT_RAY_PRIMARY].depth);
+        break;
+    }
 }
 
 /* ---- Sentences ---- */
@@ -174,7 +160,7 @@ static struct bench_case orders[] = {
 
 struct column {
     const char *head;
-    void (*put)(struct table *table, const struct bench_case *c);
+    enum cell cell;
 };
 static const struct section {
     const char *name, *title;
@@ -186,33 +172,30 @@ static const struct section {
     {"trees",
      "Trees on and off",
      judge_trees,
-     {{"scene", put_scene},
-      {"report, fps", put_report_fps},
-      {"whit, fps", put_fps},
-      {"ms a frame", put_frame}},
+     {{"scene", SCENE}, {"report, fps", REPORT_FPS}, {"whit, fps", FPS}, {"ms a frame", FRAME_MS}},
      CASES(trees)},
     {"builds",
      "54k: bins, or every position",
      judge_builds,
-     {{"build", put_case},
-      {"report, s", put_report_s},
-      {"whit, ms", put_build},
-      {"report, fps", put_report_fps},
-      {"whit, fps", put_fps},
-      {"ms a frame", put_frame},
-      {"SAH cost", put_sah},
-      {"visits a ray", put_visits}},
+     {{"build", CASE},
+      {"report, s", REPORT_S},
+      {"whit, ms", BUILD_MS},
+      {"report, fps", REPORT_FPS},
+      {"whit, fps", FPS},
+      {"ms a frame", FRAME_MS},
+      {"SAH cost", SAH},
+      {"visits a ray", VISITS}},
      CASES(builds)},
     {"orders",
      "8k: three orders of traversal",
      judge_orders,
-     {{"order", put_case},
-      {"report, fps", put_report_fps},
-      {"whit, fps", put_fps},
-      {"ms a frame", put_frame},
-      {"visits a ray", put_visits},
-      {"triangle tests a ray", put_triangles},
-      {"depth: mean, most", put_depth}},
+     {{"order", CASE},
+      {"report, fps", REPORT_FPS},
+      {"whit, fps", FPS},
+      {"ms a frame", FRAME_MS},
+      {"visits a ray", VISITS},
+      {"triangle tests a ray", TESTS},
+      {"depth: mean, most", DEPTH}},
      CASES(orders)},
 };
 enum { SECTIONS = sizeof sections / sizeof sections[0] };
@@ -236,7 +219,7 @@ static whit_result run_section(struct bench *bench, const struct section *sectio
     for (uint32_t i = 0; result == WHIT_OK && i < count; ++i) {
         table_row(&table);
         for (uint32_t k = 0; heads[k]; ++k)
-            section->columns[k].put(&table, &cases[i]);
+            put_cell(&table, &cases[i], section->columns[k].cell);
         table_keep(&table, case_document(&cases[i]));
     }
     if (result == WHIT_OK)

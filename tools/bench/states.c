@@ -1,4 +1,4 @@
-#include "bench/states.h"
+#include "bench/bench.h"
 
 #include <string.h>
 

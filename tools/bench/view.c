@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include "bench/process.h"
-#include "bench/states.h"
 #include "bench/table.h"
 #include "whit/whit_program.h"
 
