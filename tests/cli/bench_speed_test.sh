@@ -84,6 +84,10 @@ if [ "${3:-}" = all ]; then
             length == 6 and all(.beside_ms.median > 0 and .figure > 0 and .must > 0)'
     check "caches that are filled" holds '.tables[0].rows | any(.start == "cube, 1280x720, filled")'
     rm "$OUT/files"/*
+    printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$OUT/one.obj"
+    # shellcheck disable=SC2046 # 22 names
+    expect 0 "rays of many models" bench rays $(yes "$OUT/one.obj" | head -n 22) --quick --runs 1
+    check "each has its rows" test "$(grep -c "^| one" "$OUT/stdout")" -eq 66
 fi
 
 # --- Refusals ---

@@ -104,7 +104,7 @@ static void put_row(const struct look *look, const char *path, const char *what,
 
 static whit_result run_model(struct look *look, const char *path)
 {
-    struct bench_scene loaded;
+    struct bench_scene loaded = {0};
     whit_result result = bench_load(path, &loaded);
     bool has_textures = result == WHIT_OK && loaded.info.texture_count > 0;
     if (result == WHIT_OK)

@@ -156,7 +156,7 @@ static whit_result begin_peer(struct model *model, enum peer_kind kind, const ch
         return WHIT_OK;
     whit_result result = peer_begin(peer, kind, model->bench, model->loaded.scene, triangles);
     model->has_peer[kind] = result == WHIT_OK && !peer->why_not[0];
-    bool is_first = model->table->row_count == 1; /* only the head is there */
+    bool is_first = model->table->line_count == 1; /* only the head is there */
     if (result != WHIT_OK || !is_first)
         return result;
     if (peer->why_not[0])

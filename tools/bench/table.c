@@ -2,7 +2,10 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "base/array.h"
 
 static void print_head(const struct bench *bench)
 {
@@ -47,17 +50,18 @@ void table_begin(struct table *table, struct bench *bench, const char *name,
 
 void table_row(struct table *table)
 {
-    table->row_count += table->row_count < TABLE_ROWS_MAX;
+    table->is_short |= !ARRAY_PUSH(table->lines, table->line_count, table->line_capacity,
+                                   (struct table_line){{{0}}});
     table->cell = 0;
 }
 
 void table_cell(struct table *table, const char *format, ...)
 {
-    if (table->cell >= table->column_count)
+    if (table->cell >= table->column_count || table->is_short)
         return;
     va_list args;
     va_start(args, format);
-    vsnprintf(table->cells[table->row_count - 1][table->cell++], TABLE_CELL, format, args);
+    vsnprintf(table->lines[table->line_count - 1].cells[table->cell++], TABLE_CELL, format, args);
     va_end(args);
 }
 
@@ -120,8 +124,9 @@ void table_figure(struct table *table, const struct figure *figure, json_t *row)
     document_flag(row, "more_is_better", goal->more);
     document_text(row, "verdict", is_asked ? verdict : NULL);
     table_keep(table, row);
-    if (is_asked && figure->value > 0.0 && table->figure_count < TABLE_ROWS_MAX)
-        table->figures[table->figure_count++] = *figure;
+    if (is_asked && figure->value > 0.0)
+        table->is_short |=
+            !ARRAY_PUSH(table->figures, table->figure_count, table->figure_capacity, *figure);
 }
 
 void table_goal(struct table *table, const char *key, const char *name, double value,
@@ -138,12 +143,10 @@ void table_goal(struct table *table, const char *key, const char *name, double v
 
 void table_say(struct table *table, const char *format, ...)
 {
-    if (table->said_count == TABLE_NOTES_MAX)
-        return;
-    char *text = table->said[table->said_count++];
+    char text[400];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof table->said[0], format, args);
+    vsnprintf(text, sizeof text, format, args);
     va_end(args);
     document_append(table->sentences, json_string(text));
 }
@@ -186,16 +189,16 @@ static void print_rule(const struct table *table, const size_t *widths)
 static void print_table(const struct table *table)
 {
     size_t widths[TABLE_COLUMNS_MAX] = {0};
-    for (uint32_t r = 0; r < table->row_count; ++r) {
+    for (uint32_t r = 0; r < table->line_count; ++r) {
         for (uint32_t c = 0; c < table->column_count; ++c) {
-            size_t letters = count_letters(table->cells[r][c]);
+            size_t letters = count_letters(table->lines[r].cells[c]);
             widths[c] = letters > widths[c] ? letters : widths[c];
         }
     }
-    for (uint32_t r = 0; r < table->row_count; ++r) {
+    for (uint32_t r = 0; r < table->line_count; ++r) {
         putchar('|');
         for (uint32_t c = 0; c < table->column_count; ++c)
-            print_padded(table->cells[r][c], widths[c], c > 0,
+            print_padded(table->lines[r].cells[c], widths[c], c > 0,
                          table->has_goals && c + 1 == table->column_count);
         putchar('\n');
         if (r == 0)
@@ -203,21 +206,29 @@ static void print_table(const struct table *table)
     }
 }
 
-whit_result table_end(struct table *table, const char *title, whit_result result)
+/* Prints the table, and writes its plot. */
+static whit_result publish(const struct table *table)
 {
     const struct bench *bench = table->bench;
-    cli_progress_finish(&table->bench->progress);
-    table->title = title;
-    if (result != WHIT_OK) {
-        json_decref(table->object);
-        return result;
-    }
-    printf("\n### %s\n\n", title);
+    size_t i;
+    json_t *sentence;
+    printf("\n### %s\n\n", table->title);
     print_table(table);
     putchar('\n');
-    for (uint32_t i = 0; i < table->said_count; ++i)
-        printf("- %s\n", table->said[i]);
+    json_array_foreach(table->sentences, i, sentence) printf("- %s\n", json_string_value(sentence));
     fflush(stdout);
-    document_append(bench->tables, table->object);
+    document_append(bench->tables, json_incref(table->object));
     return table->has_goals && bench->ask.plot ? table_plot(table, bench->ask.plot) : WHIT_OK;
+}
+
+whit_result table_end(struct table *table, const char *title, whit_result result)
+{
+    cli_progress_finish(&table->bench->progress);
+    table->title = title;
+    if (result == WHIT_OK)
+        result = table->is_short ? WHIT_ERROR_MEMORY : publish(table);
+    json_decref(table->object);
+    free(table->lines);
+    free(table->figures);
+    return result;
 }

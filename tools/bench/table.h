@@ -5,7 +5,7 @@
 
 #include "bench/bench.h"
 
-enum { TABLE_COLUMNS_MAX = 12, TABLE_ROWS_MAX = 64, TABLE_CELL = 56, TABLE_NOTES_MAX = 32 };
+enum { TABLE_COLUMNS_MAX = 12, TABLE_CELL = 56 };
 
 /* The limit that a figure must reach and the better one that it should. `must` 0: no limit, and the
    row has no verdict. */
@@ -20,17 +20,20 @@ struct figure {
     struct goal goal;
 };
 
+struct table_line {
+    char cells[TABLE_COLUMNS_MAX][TABLE_CELL];
+};
+
 struct table {
     struct bench *bench;
     const char *title; /* set by table_end */
     json_t *object, *rows, *sentences, *left_out;
     bool has_goals; /* rows end with a verdict, without a closing `|` */
-    uint32_t column_count, row_count, cell;
-    char cells[TABLE_ROWS_MAX][TABLE_COLUMNS_MAX][TABLE_CELL];
-    char said[TABLE_NOTES_MAX][400];
-    uint32_t said_count;
-    struct figure figures[TABLE_ROWS_MAX]; /* figures with goals, for the plot */
-    uint32_t figure_count;
+    uint32_t column_count, cell;
+    struct table_line *lines; /* the head, and a line for each row */
+    struct figure *figures;   /* figures with goals, for the plot */
+    uint32_t line_count, line_capacity, figure_count, figure_capacity;
+    bool is_short; /* memory ran out */
 };
 
 /* `heads`: heads of columns, ended by NULL; where rows have goals, table_figure fills four more
