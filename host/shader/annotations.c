@@ -215,7 +215,8 @@ static bool is_own(const char *name)
                 return true;
         }
     }
-    return strncmp(name, "HAS_", 4) == 0; /* a kernel's defines */
+    /* A kernel's defines; hook/dbg.glsl has its functions from a macro. */
+    return strncmp(name, "HAS_", 4) == 0 || strcmp(name, "dbg") == 0;
 }
 
 /* Whether GLSL has or reserves the word (The OpenGL Shading Language 4.60, 3.6 Keywords). */

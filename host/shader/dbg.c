@@ -93,8 +93,8 @@ static void read_file(struct reading *r)
             else
                 add_site(r, &scan, word, line);
         }
-        word = (size_t)(scan.at - file->text) - strlen("dbg");
-        named = scan_is(&scan, SCAN_WORD, "dbg") && memcmp(file->text + word, "dbg", 3) == 0;
+        word = (size_t)(scan.start - file->text);
+        named = scan_is(&scan, SCAN_WORD, "dbg") && memcmp(scan.start, "dbg", 3) == 0;
         line = scan.token_line;
     }
 }

@@ -146,12 +146,12 @@ static bool is_long_switch(const struct spv_module *m, const uint32_t *words)
     return !type || spv_op(type) != OP_TYPE_INT || type[2] != 32;
 }
 
-/* Whether this calls call_all() of kernel/hook.comp, which calls all functions only so that the
-   compiler checks them. */
+/* Whether this calls whit_call_all() of kernel/hook.comp, which calls all functions only so that
+   the compiler checks them. */
 static bool is_call_of_all(const struct link *l, const uint32_t *words)
 {
     return spv_op(words) == OP_FUNCTION_CALL && words[3] < l->g.user.bound &&
-           graft_same_name(l->g.user_names[words[3]], "call_all(");
+           graft_same_name(l->g.user_names[words[3]], "whit_call_all(");
 }
 
 /* Copies the functions that the kernel gets from the user's module. */

@@ -171,6 +171,7 @@ bool scan_next(struct scan *scan)
     bool first = scan->at_line_start, annotation = is_annotation(scan);
     char c = look(scan);
     scan->token_line = scan->line;
+    scan->start = scan->at;
     scan->at_line_start = false;
     scan->text[0] = 0;
     if (scan->in_directive && (scan->at >= scan->end || is_newline(c))) {

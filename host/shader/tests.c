@@ -59,7 +59,7 @@ static bool read_head(struct reading *r, struct shader_test *test)
 {
     if (!take(r, SCAN_WORD, "void"))
         return false;
-    test->begin = (size_t)(r->scan.at - file_of(r)->text) - strlen("void");
+    test->begin = (size_t)(r->scan.start - file_of(r)->text);
     test->line = r->scan.token_line;
     if (!take(r, SCAN_WORD, NULL) || strlen(r->scan.text) >= sizeof test->name)
         return false;

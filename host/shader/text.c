@@ -297,8 +297,6 @@ static whit_result check_directive(struct reading *r, uint32_t file, const struc
 /* Whether an #include is alone on its line, as expand.c replaces the whole line. */
 static bool stands_alone(const char *text, const char *directive)
 {
-    while (directive > text && *directive != '#')
-        directive--;
     while (directive > text && (directive[-1] == ' ' || directive[-1] == '\t'))
         directive--;
     return directive == text || directive[-1] == '\n' || directive[-1] == '\r';
@@ -307,7 +305,7 @@ static bool stands_alone(const char *text, const char *directive)
 static whit_result read_include(struct reading *r, uint32_t file, struct scan *scan)
 {
     uint32_t line = scan->token_line;
-    bool alone = stands_alone(r->text->files[file].text, scan->at - 1);
+    bool alone = stands_alone(r->text->files[file].text, scan->start);
     if (!scan_next(scan) || scan->kind != SCAN_STRING)
         return at(r, file, line, "#include wants a name in quotes: #include \"file.glsl\"");
     char name[SCAN_TEXT_BYTES];
@@ -395,10 +393,7 @@ static void blank_if_zero(struct shader_file *file)
             from = is_if_zero(&scan) ? file->text + (scan.at - file->text) : NULL;
             depth = 0;
         } else if (depth == 0 && (ends || strncmp(scan.text, "el", 2) == 0)) {
-            const char *to = scan.at;
-            while (*to != '#')
-                --to;
-            blank(from, to);
+            blank(from, scan.start);
             from = NULL;
         } else {
             depth += opens;

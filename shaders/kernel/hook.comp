@@ -10,7 +10,7 @@ layout(local_size_x = 1) in;
 #include "../hook/user.glsl"
 
 // Calls the file's functions, so that the compiler checks them against their declarations.
-void call_all()
+void whit_call_all()
 {
     Surface s;
     Optics o;
@@ -35,5 +35,5 @@ void call_all()
 // Without this call, which is left out of kernels, a missing function would be no error.
 void main()
 {
-    call_all();
+    whit_call_all();
 }

@@ -76,6 +76,7 @@ TEST_IN(kernels_with_functions_of_users_are_valid, compiler_begin, compiler_end)
          "* visible(s, l.dir, l.distance); }\n"
          "if (trace(off_surface(s, s.ng), s.ng, m, d)) sum += m.color; return sum; }\n",
          KERNEL(HIT)},
+        {"void call_all() {}\nvec3 miss(vec3 d) { call_all(); return d; }\n", KERNEL(MISS)},
         {"float begin_user(float x) { return x; }\nfloat main_(float x) { return x; }\n"
          "vec3 post(ivec2 at, vec3 c) { return c * begin_user(main_(1.0)); }\n",
          KERNEL(POST)},

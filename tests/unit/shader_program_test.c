@@ -158,6 +158,7 @@ TEST(values_of_another_version_are_dropped)
  * GLSL. */
 TEST(code_that_is_left_out_counts_for_nothing)
 {
+    assert_int_equal(read_shader("#if 0\n//@ fuel 0\n#/* # */endif\n" MISS), WHIT_OK);
     assert_int_equal(read_shader("#if 0\n//@ slider a 0 1 0\n#include \"nowhere.glsl\"\n#if 1\n"
                                  "//@ toggle b\n#endif\nvec3 post(int at) { return at; }\n#else\n"
                                  "//@ toggle images2D\n//@ toggle texture1\n//@ toggle "
@@ -187,6 +188,7 @@ TEST(lines_that_are_none_are_refused_with_their_line)
                  {"slider ELSEWHERE 0 1 0", "is a name of whit's"},
                  {"slider LIB_OPTICS_GLSL 0 1 0", "is a name of whit's"},
                  {"slider HAS_SHADE 0 1 0", "is a name of whit's"},
+                 {"slider dbg 0 1 0", "`dbg` is a name of whit's"},
                  {"slider x 0 1", "value of a slider"},
                  {"slider x 1 0 0", "largest value"},
                  {"slider x 0 1 2", "from 0 to 1"},
@@ -485,6 +487,15 @@ TEST(tests_that_are_none_are_refused_with_their_line)
         {"void f() {\n check(true); }\n", outside, 2},
     };
     refuse_all(read_tests, cases, sizeof cases / sizeof *cases);
+}
+
+TEST(words_may_go_on_in_the_next_line)
+{
+    struct shader_text out;
+    assert_int_equal(read_tests("//@ test\nvo\\\nid a(uint s) { check(true); }\n"), WHIT_OK);
+    assert_true(shader_tests_text(&tests, &text, false, &out));
+    assert_null(strstr(out.files[0].text, "vo"));
+    shader_text_end_copy(&out);
 }
 
 TEST(a_file_without_tests_may_have_a_function_check)
