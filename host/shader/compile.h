@@ -97,10 +97,4 @@ WHIT_CHECK whit_result shader_compile(struct shader_compiler *compiler,
                                       struct shader_code *code, struct shader_errors *errors);
 void shader_code_free(struct shader_code *code); /* accepts a zeroed one */
 
-/* The text that shader_compile would compile, for people to read; free() it. NULL: no memory, no
-   such kernel, or too much text, which is logged and added to `errors`. */
-char *shader_expand(const whit_log *log, const struct shader_text *text,
-                    const struct shader_request *request, size_t *bytes,
-                    struct shader_errors *errors);
-
 #endif

@@ -293,21 +293,12 @@ bool expand_kernel(const whit_log *log, const struct shader_text *text,
     if (goes_on(&e))
         put_own(&e, &kernel);
     free(e.pasted);
-    *expanded = (struct expanded){e.out, e.used, e.user_at, e.user_end};
-    if (goes_on(&e) && e.out)
+    *expanded = (struct expanded){0};
+    if (goes_on(&e) && e.out) {
+        *expanded = (struct expanded){e.out, e.used, e.user_at, e.user_end};
         return true;
+    }
     explain(&e, log, errors);
     free(e.out);
     return false;
-}
-
-char *shader_expand(const whit_log *log, const struct shader_text *text,
-                    const struct shader_request *request, size_t *bytes,
-                    struct shader_errors *errors)
-{
-    struct expanded expanded;
-    if (!expand_kernel(log, text, request, "whit.", &expanded, errors))
-        return NULL;
-    *bytes = expanded.bytes;
-    return expanded.text;
 }

@@ -23,7 +23,8 @@ size_t expand_included(const char *line, const char **name);
    "x.glsl". */
 void expand_join(const char *from, const char *name, size_t length, char out[EXPAND_NAME_BYTES]);
 
-/* False: the reason was logged, and added to `errors`. */
+/* The text that the compiler gets. False: no memory, no such kernel or too much text, which was
+   logged, and added to `errors`; *expanded is empty. */
 bool expand_kernel(const whit_log *log, const struct shader_text *text,
                    const struct shader_request *request, const char *own, struct expanded *expanded,
                    struct shader_errors *errors);

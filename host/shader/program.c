@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "shader/annotations.h"
+#include "shader/expand.h"
 #include "shader/sliders.h"
 #include "whit/whit_program.h"
 
@@ -366,14 +367,13 @@ char *shader_program_expand(const whit_log *log, const whit_shader *shader, enum
 {
     struct kernel_parts parts;
     struct kernel_request of;
-    char *text = NULL;
-    size_t bytes;
+    struct expanded expanded = {0};
     if (parts_init(log, shader, kernel == HOOK_KERNEL_TEST ? TEXT_TESTS : TEXT_PLAIN, &parts)) {
         kernel_request_init(shader, &parts, &of);
-        text = shader_expand(log, &parts.user, &of.request, &bytes, NULL);
+        (void)expand_kernel(log, &parts.user, &of.request, "whit.", &expanded, NULL);
     }
     parts_finish(&parts);
-    return text;
+    return expanded.text;
 }
 
 /* Fills in what whit_shader_info points to. */

@@ -29,7 +29,7 @@ struct scan {
     /* The current token. */
     enum scan_kind kind;
     uint32_t token_line;
-    const char *start; /* where it begins */
+    const char *start;          /* where it begins */
     char text[SCAN_TEXT_BYTES]; /* a longer token is cut */
     const char *annotation;     /* behind its //@ */
     const char *reason;

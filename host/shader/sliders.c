@@ -107,12 +107,15 @@ static bool refuse_name(const whit_shader *shader, const char *name, char *why, 
     return false;
 }
 
-static bool read_pair(const whit_shader *shader, char *pair, float *values, char *why,
-                      size_t why_bytes)
+/* Reads a pair NAME=VALUE of `length` bytes. */
+static bool read_pair(const whit_shader *shader, const char *text, size_t length, float *values,
+                      char *why, size_t why_bytes)
 {
+    char pair[SHADER_NAME_BYTES + SHADER_HELP_BYTES];
+    snprintf(pair, sizeof pair, "%.*s", (int)length, text);
     char *equals = strchr(pair, '=');
     float value[3] = {0};
-    if (!equals || equals == pair) {
+    if (length >= sizeof pair || !equals || equals == pair) {
         snprintf(why, why_bytes, "NAME=VALUE is needed, not `%.60s`", pair);
         return false;
     }
@@ -134,10 +137,9 @@ bool shader_sliders_keep(const whit_shader *shader, char *text)
     char *to = text, *from = text;
     float values[SHADER_SLIDERS_MAX];
     while (*from) {
-        char pair[SHADER_NAME_BYTES + SHADER_HELP_BYTES], why[SHADER_REASON_BYTES];
+        char why[SHADER_REASON_BYTES];
         size_t length = strcspn(from, ",");
-        snprintf(pair, sizeof pair, "%.*s", (int)length, from);
-        if (length < sizeof pair && read_pair(shader, pair, values, why, sizeof why)) {
+        if (read_pair(shader, from, length, values, why, sizeof why)) {
             if (to > text)
                 *to++ = ',';
             memmove(to, from, length);
@@ -157,15 +159,8 @@ bool shader_sliders_read(const whit_shader *shader, const char *text, bool skip,
     for (uint32_t i = 0; i < shader->slider_count; ++i)
         store(&shader->sliders[i], shader->sliders[i].value, values);
     while (text && *text) {
-        char pair[SHADER_NAME_BYTES + SHADER_HELP_BYTES];
         size_t length = strcspn(text, ",");
-        if (length >= sizeof pair) {
-            snprintf(why, why_bytes, "NAME=VALUE is needed, not `%.60s`", text);
-            return false;
-        }
-        memcpy(pair, text, length);
-        pair[length] = 0;
-        if (!read_pair(shader, pair, values, why, why_bytes) && !skip)
+        if (!read_pair(shader, text, length, values, why, why_bytes) && !skip)
             return false;
         text += length + (text[length] == ',');
     }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "kernels.h"
+#include "shader/expand.h"
 #include "shader/portable.h"
 #include "shader_fixture.h"
 #include "sources.h"
@@ -182,10 +183,10 @@ TEST_IN(defines_stand_behind_the_extensions, compiler_begin, compiler_end)
                                          "void main() {}\n",
                                      .defines = defines,
                                      .define_count = 2};
-    size_t bytes;
-    char *text = shader_expand(&warnings_log, NULL, &request, &bytes, &errors);
-    assert_non_null(text);
-    assert_int_equal(strlen(text), bytes);
+    struct expanded expanded;
+    assert_true(expand_kernel(&warnings_log, NULL, &request, "whit.", &expanded, &errors));
+    const char *text = expanded.text;
+    assert_int_equal(strlen(text), expanded.bytes);
     const char *extension = strstr(text, "#extension GL_GOOGLE_include_directive");
     const char *define = strstr(text, "\n#define HOOK_A\n#define HOOK_B 7\n#line 4 ");
     assert_true(extension && define && extension < define);
@@ -193,7 +194,7 @@ TEST_IN(defines_stand_behind_the_extensions, compiler_begin, compiler_end)
     /* A file that is included under a condition is included again further below. */
     const char *first = strstr(text, "#ifndef LIB_TURN_GLSL");
     assert_true(first && strstr(first + 1, "#ifndef LIB_TURN_GLSL"));
-    free(text);
+    free(expanded.text);
     request.kernel = "kernel/none.comp";
     request.kernel_text = NULL;
     struct shader_code code;
