@@ -188,8 +188,8 @@ static bool read_slider_value(struct line *line, whit_slider *slider,
 /* Whether users' text is compiled behind this file of whit's, with its records and macros. */
 static bool is_before_users(const char *path)
 {
-    return strcmp(path, "hook/interface.glsl") == 0 || strcmp(path, "lib/records.glsl") == 0 ||
-           strcmp(path, "lib/optics.glsl") == 0;
+    return strcmp(path, "hook/interface.glsl") == 0 || strcmp(path, "hook/dbg.glsl") == 0 ||
+           strcmp(path, "lib/records.glsl") == 0 || strcmp(path, "lib/optics.glsl") == 0;
 }
 
 /* Whether no global variable may have the name: some shader of whit's own has a function of that

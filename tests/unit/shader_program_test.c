@@ -188,6 +188,7 @@ TEST(lines_that_are_none_are_refused_with_their_line)
                  {"slider ELSEWHERE 0 1 0", "is a name of whit's"},
                  {"slider LIB_OPTICS_GLSL 0 1 0", "is a name of whit's"},
                  {"slider HAS_SHADE 0 1 0", "is a name of whit's"},
+                 {"slider HOOK_DBG_GLSL 0 1 0", "is a name of whit's"},
                  {"slider dbg 0 1 0", "`dbg` is a name of whit's"},
                  {"slider x 0 1", "value of a slider"},
                  {"slider x 1 0 0", "largest value"},
