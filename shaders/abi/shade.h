@@ -153,7 +153,7 @@ struct gpu_frame {
     gpu_uint uv1_row;   /* of uv set 1; uv0_row where there is none */
     gpu_uint color_row; /* of triangle 0: TRIANGLE_COLOR_ROWS each */
     gpu_float contact;  /* surfaces of two media within this distance touch */
-    gpu_uint eye_media0, eye_media1; /* gpu_media that camera rays start in */
+    gpu_uint eye_media0, eye_media1; /* media that camera rays start in, see MEDIA_MAX */
     gpu_uint eye_media2, eye_media3;
     gpu_float lens_radius;    /* CAMERA_LENS, world units: lens_xy is computed from it */
     gpu_float focus_distance; /* along `forward` */
@@ -202,10 +202,6 @@ GPU_ASSERT_SIZE(gpu_view, 96)
    follow. Lowest priority first, and of equal priorities the one entered first: the last entry is
    the medium that counts. There is one for each ray. */
 #define MEDIA_MAX 8u
-struct gpu_media {
-    gpu_uint words0, words1, words2, words3;
-};
-GPU_ASSERT_SIZE(gpu_media, 16)
 
 /* The state of a queued ray: number of surfaces passed unseen in the low bits, above them the
    bounces so far, and above these, from frame.slot_shift on, the slot of its pixel. */

@@ -11,7 +11,7 @@
 const uint CROSSED_MAX = 4u;
 
 struct Crossing {
-    uvec4 before, after; // media on both sides, struct gpu_media
+    uvec4 before, after; // media on both sides, see MEDIA_MAX
     float eta;           // index of refraction of the ray's side over that of the other
     bool seen;           // false: both sides are the same medium, so there is nothing to see
     // Where light that passes goes on: at the last of the surfaces that are crossed here.

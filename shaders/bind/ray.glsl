@@ -6,7 +6,7 @@
 
 struct Ray {
     vec3 origin, dir, weight;
-    uvec4 media; // struct gpu_media
+    uvec4 media; // see MEDIA_MAX
     uint steps;  // ray_bounces(), and in the low bits the number of surfaces passed unseen
     uint skip_primitive, skip_instance;
     uint skip_record; // record of that primitive; set where the ray is to be queued

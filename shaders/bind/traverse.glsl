@@ -535,8 +535,6 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint s
             look_at_leaf(mode, ray, ray.origin, ray.dir, t_min, 0u, skip_instance, skip_primitive,
                          ref, stack, hit);
     } while (settles(mode) && another_iteration(ref != REF_DONE));
-    // A driver that cuts loops short (lavapipe: after 65,535 iterations per subgroup) leaves work
-    // undone.
     if (ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
@@ -607,8 +605,6 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
             look_at_leaf(mode, local, origin, dir, t_min, ref & BVH_FIRST_MASK, skip_instance,
                          skip_primitive, mesh_ref, mesh_stack, hit);
     } while (settles(mode) && another_iteration(ref != REF_DONE));
-    // A driver that cuts loops short (lavapipe: after 65,535 iterations per subgroup) leaves work
-    // undone.
     if (ref != REF_DONE)
         hit.status |= STATUS_UNFINISHED_TRAVERSAL;
 }
