@@ -54,6 +54,9 @@ struct whit_renderer {
    what it gives. */
 #define API_FAIL(log, result, ...) (log_error((log), __VA_ARGS__), (result))
 
+/* What is asked for: the defaults where `params` is NULL. */
+whit_renderer_params api_params(const whit_renderer_params *params);
+
 /* WHIT_ERROR_USAGE, logged, for a value that the enumeration does not have. */
 WHIT_CHECK whit_result api_check_instances(const whit_log *log, whit_instances instances);
 WHIT_CHECK whit_result api_check_numerics(const whit_log *log, whit_numerics numerics);

@@ -72,11 +72,9 @@ void whit_image_display_bytes(const whit_image *image, uint8_t *rgba)
 
 void whit_image_display_as(whit_image *image, const whit_renderer_params *params)
 {
-    const whit_renderer_params defaults = whit_renderer_defaults();
-    if (!params)
-        params = &defaults;
-    image->image.display_scale = (float)same_pow(2.0, params->exposure_ev);
-    image->image.display_soft = params->soft_highlights;
+    const whit_renderer_params taken = api_params(params);
+    image->image.display_scale = (float)same_pow(2.0, taken.exposure_ev);
+    image->image.display_soft = taken.soft_highlights;
 }
 
 whit_result whit_image_save(const whit_image *image, const char *path, const whit_text *texts,

@@ -132,6 +132,8 @@ void whit_probe_why(const whit_probe_report *report, const whit_scene *scene, ch
                     size_t bytes)
 {
     struct sentence to = {.text = text, .bytes = bytes};
+    if (bytes == 0)
+        return;
     text[0] = '\0';
     if (report->ray_count == 0)
         return;

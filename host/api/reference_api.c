@@ -16,9 +16,7 @@ struct whit_reference {
 whit_result whit_reference_create(whit_accel *accel, const whit_renderer_params *params,
                                   uint32_t threads, whit_reference **out)
 {
-    const whit_renderer_params defaults = whit_renderer_defaults();
-    const struct reference_params inner = {.picture = params ? *params : defaults,
-                                           .thread_count = threads};
+    const struct reference_params inner = {.picture = api_params(params), .thread_count = threads};
     *out = NULL;
     whit_reference *reference = calloc(1, sizeof *reference);
     if (!reference)

@@ -40,9 +40,6 @@ static const double BAILOUT_ALL = 16.0;
 whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_params *params,
                                whit_refine **out)
 {
-    const whit_renderer_params defaults = whit_renderer_defaults();
-    if (!params)
-        params = &defaults;
     *out = NULL;
     whit_result result = api_need_device(renderer);
     if (result != WHIT_OK)
@@ -69,7 +66,7 @@ void whit_refine_move(whit_refine *refine, whit_renderer *renderer,
                       const whit_renderer_params *params)
 {
     refine->renderer = renderer;
-    refine->params = *params;
+    refine->params = api_params(params);
     refine->params.sampling = (whit_sampling){.count = 1};
     refine->params.first_row = refine->params.row_count = 0; /* the whole picture */
 }

@@ -58,6 +58,11 @@ whit_renderer_params whit_renderer_defaults(void)
                                   .bailout = WHIT_BAILOUT_DEFAULT};
 }
 
+whit_renderer_params api_params(const whit_renderer_params *params)
+{
+    return params ? *params : whit_renderer_defaults();
+}
+
 /* Poses the accel, which another renderer may have moved to its own time. */
 static whit_result pose_on_cpu(struct accel *accel, double time_s)
 {
@@ -72,11 +77,9 @@ static whit_result pose_on_cpu(struct accel *accel, double time_s)
 }
 
 whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
-                                 const whit_renderer_params *params, whit_renderer **out)
+                                 const whit_renderer_params *asked, whit_renderer **out)
 {
-    const whit_renderer_params defaults = whit_renderer_defaults();
-    if (!params)
-        params = &defaults;
+    const whit_renderer_params params = api_params(asked);
     *out = NULL;
     whit_log log = device ? device->log : accel->log;
     whit_renderer *renderer = calloc(1, sizeof *renderer);
@@ -84,12 +87,12 @@ whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
         return API_FAIL(&log, WHIT_ERROR_MEMORY, "out of memory");
     renderer->log = log;
     renderer->accel = accel->accel;
-    renderer->params = *params;
+    renderer->params = params;
     whit_result result = WHIT_OK;
     if (device)
-        result = renderer_create(&log, device->device, accel->accel, params, &renderer->renderer);
+        result = renderer_create(&log, device->device, accel->accel, &params, &renderer->renderer);
     else if ((result = params_check(&log, &renderer->params)) == WHIT_OK)
-        result = pose_on_cpu(accel->accel, params->time_s);
+        result = pose_on_cpu(accel->accel, params.time_s);
     if (result != WHIT_OK) {
         whit_renderer_destroy(renderer);
         return result;
@@ -144,33 +147,29 @@ static void take_params(whit_renderer *renderer, const whit_renderer_params *par
     renderer->params.shader = made.shader;
 }
 
-whit_result whit_renderer_set_view(whit_renderer *renderer, const whit_renderer_params *params)
+whit_result whit_renderer_set_view(whit_renderer *renderer, const whit_renderer_params *asked)
 {
-    const whit_renderer_params defaults = whit_renderer_defaults();
-    if (!params)
-        params = &defaults;
+    const whit_renderer_params params = api_params(asked);
     whit_result result = api_need_device(renderer);
     if (result == WHIT_OK)
-        result = renderer_set_view(renderer->renderer, params);
+        result = renderer_set_view(renderer->renderer, &params);
     if (result == WHIT_OK)
-        take_params(renderer, params);
+        take_params(renderer, &params);
     return result;
 }
 
-whit_result whit_renderer_set_shader(whit_renderer *renderer, const whit_renderer_params *params)
+whit_result whit_renderer_set_shader(whit_renderer *renderer, const whit_renderer_params *asked)
 {
-    const whit_renderer_params defaults = whit_renderer_defaults();
-    if (!params)
-        params = &defaults;
+    const whit_renderer_params params = api_params(asked);
     whit_result result = api_need_device(renderer);
-    if (result == WHIT_OK && !renderer_takes_shader(renderer->renderer, params->shader))
+    if (result == WHIT_OK && !renderer_takes_shader(renderer->renderer, params.shader))
         result = API_FAIL(&renderer->log, WHIT_ERROR_USAGE,
                           "a shader of other functions needs a renderer of its own");
     if (result == WHIT_OK)
-        result = renderer_set_shader(renderer->renderer, params);
+        result = renderer_set_shader(renderer->renderer, &params);
     if (result == WHIT_OK) {
-        take_params(renderer, params);
-        renderer->params.shader = params->shader;
+        take_params(renderer, &params);
+        renderer->params.shader = params.shader;
     }
     return result;
 }
@@ -191,9 +190,9 @@ whit_result whit_kernels_list(whit_device *device, whit_accel *accel,
                               const whit_renderer_params *params, bool make, whit_kernel *kernels,
                               uint32_t *count)
 {
-    const whit_renderer_params defaults = whit_renderer_defaults();
-    return render_list_kernels(&device->log, device->device, accel->accel,
-                               params ? params : &defaults, make, kernels, count);
+    const whit_renderer_params taken = api_params(params);
+    return render_list_kernels(&device->log, device->device, accel->accel, &taken, make, kernels,
+                               count);
 }
 
 static whit_result read_aov(struct renderer *renderer, whit_aov aov, struct image *out)

@@ -361,11 +361,25 @@ bool cli_same_file(const char *a, const char *b)
     return S_ISREG(first.st_mode) && are_same(&first, &second);
 }
 
+size_t cli_find_marks(const char *pattern, size_t *length)
+{
+    const char *slash = strrchr(pattern, '/');
+    const char *last = strrchr(slash ? slash : pattern, '#');
+    *length = 0;
+    if (!last)
+        return 0;
+    const char *first = last;
+    while (first > pattern && first[-1] == '#')
+        --first;
+    *length = (size_t)(last - first) + 1;
+    return (size_t)(first - pattern);
+}
+
 /* Whether `path` is a name that numbers in place of the `#` of `pattern` may give, or another
    pattern of such names. */
 static bool is_numbered(const char *pattern, const char *path)
 {
-    size_t before = strcspn(pattern, "#"), hashes = strspn(pattern + before, "#");
+    size_t hashes, before = cli_find_marks(pattern, &hashes);
     if (hashes == 0 || strncmp(pattern, path, before) != 0)
         return false;
     size_t digits = strspn(path + before, "#0123456789");

@@ -57,6 +57,9 @@ bool cli_check_writable(struct cli_reader *reader, const char *path);
 bool cli_check_output(struct cli_reader *reader, const char *option, const char *path,
                       const char *hint);
 
+/* Finds the last run of # in the name of a file, not in its folders. Gives its offset and *length;
+ *length 0: there is none. */
+size_t cli_find_marks(const char *pattern, size_t *length);
 /* A file of the command line, or one that a command finds by itself. */
 struct cli_file {
     const char *name; /* of its option, or what it is */

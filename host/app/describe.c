@@ -75,26 +75,27 @@ static void put_cell(const char *text)
     }
 }
 
-static bool takes_as_is(const struct cli_command *command, const struct setting *option)
+/* Whether the command takes the option with exactly this help. */
+static bool takes_as_is(const struct cli_command *command, const struct setting *option,
+                        const char *help)
 {
     const struct setting *own;
-    for (uint32_t i = 0; (own = cli_option_at(command, i)); ++i) {
-        if (own == option)
-            return true;
-    }
-    return false;
+    char other[HELP_MAX];
+    uint32_t i = 0;
+    while ((own = cli_option_at(command, i)) && own != option)
+        ++i;
+    return own && strcmp(cli_help(command, option, other, sizeof other), help) == 0;
 }
 
 /* Prints one row of the table, for all commands that take the option with exactly the same help. */
 static void print_row(const struct cli_command *const *commands, uint32_t count, uint32_t first,
                       const struct setting *option)
 {
-    char list[80], help[HELP_MAX], other[HELP_MAX];
+    char list[80], help[HELP_MAX];
     const char *argument = cli_argument_name(option, list, sizeof list);
     cli_help(commands[first], option, help, sizeof help);
     for (uint32_t i = 0; i < first; ++i) {
-        if (takes_as_is(commands[i], option) &&
-            strcmp(cli_help(commands[i], option, other, sizeof other), help) == 0)
+        if (takes_as_is(commands[i], option, help))
             return;
     }
     fputs("| ", stdout);
@@ -104,8 +105,7 @@ static void print_row(const struct cli_command *const *commands, uint32_t count,
     put_cell(argument);
     fputs("` |", stdout);
     for (uint32_t i = first; i < count; ++i) {
-        if (takes_as_is(commands[i], option) &&
-            strcmp(cli_help(commands[i], option, other, sizeof other), help) == 0)
+        if (takes_as_is(commands[i], option, help))
             printf(" %s", commands[i]->name);
     }
     fputs(option->developer ? ", `--help-all` | " : " | ", stdout);

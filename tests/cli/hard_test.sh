@@ -68,7 +68,9 @@ refuse 2 "a file without a view" "go together" hard -o "$OUT/files/x.png"
 refuse 2 "a view and a table" "no table" hard --view leaks -o "$OUT/files/x.png" --quick
 refuse 2 "another view" "leaks is needed" hard --view depth -o "$OUT/files/x.png"
 refuse 2 "a picture of no kind" "pictures are" hard --view leaks -o "$OUT/files/x.gif"
-refuse 2 "a size of nothing" "are of --view" hard --size 9x9
+for option in "--size 9x9" "--camera 0" "--time 1" "--frame 1"; do
+    refuse 2 "$option of nothing" "are of --view" hard $option
+done
 refuse 5 "a time limit" "time limit" hard --rays 200000 --quiet --time-limit 0.5 --json "$J"
 check "no file was left" is_empty "$OUT/files"
 finish

@@ -88,6 +88,8 @@ refuse 2 "scene over its scene" "SCENE and --triangles name the same file" scene
 refuse 2 "render over its recipe" "-o and --recipe name the same file" render c.json --recipe a.png -o ./a.png
 refuse 2 "a frame over the sky" "sky.1.exr: -o and --environment name the same file" \
     render "$SCENES/spin.json" --frames 0-1 --environment sky.1.exr -o sky.#.exr
+refuse 2 "in a folder with a mark" "run#1/sky.1.exr: -o and --environment name the same file" \
+    render "$SCENES/spin.json" --frames 0-1 --environment run#1/sky.1.exr -o run#1/sky.#.exr
 refuse 2 "frames over frames" "-o and --ids name the same file" \
     render "$SCENES/spin.json" --frames 0-1 -o p.#.exr --ids p.##.exr
 refuse 2 "bench over its model" "MODEL and --json name the same file" bench look c.json --json c.json

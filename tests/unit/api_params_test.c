@@ -273,6 +273,7 @@ TEST_IN(no_params_are_the_defaults, begin, device_end)
     assert_int_equal(info.width, 640);
     whit_image_display_as(image, NULL);
     assert_int_equal(whit_refine_create(renderer, NULL, &refine), WHIT_OK);
+    whit_refine_move(refine, renderer, NULL);
     whit_refine_destroy(refine);
 }
 

@@ -92,10 +92,15 @@ TEST(a_row_has_the_mean_of_its_rays)
     rays[4].added[0] = 1.0f;
 }
 
-TEST(a_report_without_rays_has_no_rows)
+TEST(a_report_without_rays_has_no_rows_and_no_reason)
 {
+    char why[2] = "ab";
     report.ray_count = 0;
     check_rows(NULL, 0);
+    whit_probe_why(&report, NULL, why, 0);
+    assert_memory_equal(why, "ab", 2);
+    whit_probe_why(&report, NULL, why, 1);
+    assert_memory_equal(why, "\0b", 2);
     report.ray_count = RAYS;
 }
 

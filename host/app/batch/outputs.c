@@ -24,7 +24,7 @@ static bool add_frames(struct outputs *outputs, const struct output *output, con
                        const struct frames *frames)
 {
     size_t length;
-    const char *at = name + frames_find_marks(name, &length);
+    const char *at = name + cli_find_marks(name, &length);
     uint64_t above = 1;
     for (size_t i = 0; i < length && i < DIGITS_MAX; ++i)
         above *= 10;

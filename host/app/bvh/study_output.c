@@ -179,12 +179,10 @@ static json_t *bins_document(const uint64_t *bins, uint32_t count)
     return list;
 }
 
-static json_t *visits_document(double pairs, double triangles)
+static void put_visits(json_t *visits, double pairs, double triangles)
 {
-    json_t *visits = document_object();
     document_number(visits, "inner_nodes", pairs);
     document_number(visits, "triangles", triangles);
-    return visits;
 }
 
 static json_t *rates_document(const struct study *study, const struct study_row *row)
@@ -200,11 +198,10 @@ static json_t *rates_document(const struct study *study, const struct study_row 
     return rates;
 }
 
-static json_t *row_document(const struct study *study, const struct study_row *row)
+static void put_row(json_t *object, const struct study *study, const struct study_row *row)
 {
     const whit_accel_info *info = &row->info;
     const whit_accel_report *report = &row->report;
-    json_t *object = document_object();
     document_text(object, "builder", row->name);
     document_put(object, "build_ms", build_document(study, row));
     document_count(object, "nodes", info->node_count);
@@ -221,28 +218,25 @@ static json_t *row_document(const struct study *study, const struct study_row *r
     document_number(object, "sah_cost", report->sah_cost);
     document_number(object, "epo", report->epo);
     document_number(object, "overlap", report->overlap);
-    document_put(object, "predicted",
-                 visits_document(report->predicted_inner_nodes, report->predicted_triangles));
-    document_put(object, "measured",
-                 visits_document(report->measured_inner_nodes, report->measured_triangles));
+    put_visits(document_child(object, "predicted"), report->predicted_inner_nodes,
+               report->predicted_triangles);
+    put_visits(document_child(object, "measured"), report->measured_inner_nodes,
+               report->measured_triangles);
     document_count(object, "measured_lines", report->measured_rays);
     document_put(object, "mrays_per_s", rates_document(study, row));
     document_put(object, "valid", study->validate ? json_true() : json_null());
-    return object;
 }
 
-static json_t *scene_document(const struct study *study)
+static void put_scene(json_t *scene, const struct study *study)
 {
     whit_scene_info info;
     whit_scene_get_info(study->job.scene, &info);
-    json_t *scene = document_object();
     document_text(scene, "file", study->job.settings.scene);
     document_hash(scene, "hash", info.hash);
     document_count(scene, "instances", info.instance_count);
     document_count(scene, "meshes", info.mesh_count);
     document_count(scene, "triangles", info.triangle_count);
     document_count(scene, "spheres", info.sphere_count);
-    return scene;
 }
 
 static json_t *device_document(const struct study *study)
@@ -267,7 +261,7 @@ static json_t *hits_document(const struct study *study)
 static int print_json(const struct study *study)
 {
     json_t *root = document_root();
-    document_put(root, "scene", scene_document(study));
+    put_scene(document_child(root, "scene"), study);
     document_put(root, "device", device_document(study));
     document_count(root, "runs", study->run_count);
     json_t *rays = document_child(root, "rays");
@@ -275,7 +269,7 @@ static int print_json(const struct study *study)
         document_count(rays, study_kind_names[kind], study->rays[kind].count);
     json_t *rows = document_list(root, "builders");
     for (uint32_t i = 0; i < study->row_count; ++i)
-        document_append(rows, row_document(study, &study->rows[i]));
+        put_row(document_entry(rows), study, &study->rows[i]);
     document_put(root, "hits", hits_document(study));
     return cli_print_json(root);
 }

@@ -57,9 +57,8 @@ static void print_floats(const whit_device_info *info)
            floats.rounds_nearest ? "" : ", sums are not rounded to nearest");
 }
 
-static json_t *device_document(const whit_device_info *info)
+static void put_device(json_t *device, const whit_device_info *info)
 {
-    json_t *device = document_object();
     document_count(device, "index", info->index);
     document_text(device, "name", info->name);
     document_text(device, "kind", whit_device_kind_name(info->kind));
@@ -75,7 +74,6 @@ static json_t *device_document(const whit_device_info *info)
     document_text(device, "why_not", info->usable ? NULL : info->why_not);
     document_flag(device, "automatic", info->automatic);
     document_put(device, "floats", floats_document(info));
-    return device;
 }
 
 static void print_device(const whit_device_info *info)
@@ -99,7 +97,7 @@ static int print_json(const whit_device_info *infos, uint32_t count,
 {
     json_t *root = document_root(), *list = document_list(root, "devices");
     for (uint32_t i = 0; i < count; ++i)
-        document_append(list, device_document(&infos[i]));
+        put_device(document_entry(list), &infos[i]);
     list = document_list(root, "hints");
     for (uint32_t i = 0; i < hints->count; ++i)
         document_append(list, json_string(hints->list[i]));

@@ -130,9 +130,10 @@ static bool check_view(struct cli_reader *reader, const struct hard *hard)
 {
     if ((hard->drawn != 0) != (hard->output != NULL))
         return cli_misuse(reader, "--view leaks and -o FILE go together");
-    if (!hard->drawn &&
-        (hard->view.width || hard->camera || settings_given(&hard->job.settings, "time")))
-        return cli_misuse(reader, "--size, --camera and --time are of --view leaks");
+    bool timed =
+        settings_given(&hard->job.settings, "time") || settings_given(&hard->job.settings, "frame");
+    if (!hard->drawn && (hard->view.width || hard->camera || timed))
+        return cli_misuse(reader, "--size, --camera, --time and --frame are of --view leaks");
     if (hard->drawn && (hard->json_path || hard->params.rays || hard->quick || hard->params.filter))
         return cli_misuse(reader, "--view leaks makes a picture, and no table");
     if (!hard->drawn)

@@ -149,9 +149,8 @@ int hard_print(const struct hard *hard)
 
 /* ---- JSON ---- */
 
-static json_t *row_document(const whit_hard_row *row)
+static void put_row(json_t *out, const whit_hard_row *row)
 {
-    json_t *out = document_object();
     document_text(out, "case", row->name);
     document_text(out, "place", row->place);
     document_text(out, "numerics", value_word(values_numerics, (int)row->numerics));
@@ -172,19 +171,16 @@ static json_t *row_document(const whit_hard_row *row)
     document_flag(out, "unanswered", row->unanswered);
     document_flag(out, "promised", row->promised);
     document_flag(out, "kept", row->kept);
-    return out;
 }
 
-static json_t *surface_document(const whit_hard_report *report)
+static void put_surface(json_t *out, const whit_hard_report *report)
 {
-    json_t *out = document_object();
     document_count(out, "triangles", report->triangles);
     document_count(out, "edges", report->edges);
     document_count(out, "open_edges", report->open_edges);
     document_count(out, "crowded_edges", report->crowded_edges);
     document_count(out, "flipped_edges", report->flipped_edges);
     document_count(out, "duplicates", report->duplicates);
-    return out;
 }
 
 whit_result hard_save_json(const struct hard *hard)
@@ -201,11 +197,11 @@ whit_result hard_save_json(const struct hard *hard)
     if (report->hash_met)
         document_hash(out, "hash_met", report->hash_met);
     if (hard->job.settings.scene[0])
-        document_put(out, "surface", surface_document(report));
+        put_surface(document_child(out, "surface"), report);
     document_flag(out, "equal_bits", report->equal_bits);
     document_count(out, "broken", report->broken);
     json_t *rows = document_list(out, "rows");
     for (uint32_t i = 0; i < report->row_count; ++i)
-        document_append(rows, row_document(&report->rows[i]));
+        put_row(document_entry(rows), &report->rows[i]);
     return document_save(out, hard->json_path);
 }

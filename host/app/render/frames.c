@@ -34,23 +34,9 @@ bool frames_read(const struct setting *setting, const char *value, void *request
     return true;
 }
 
-size_t frames_find_marks(const char *pattern, size_t *length)
-{
-    const char *slash = strrchr(pattern, '/');
-    const char *last = strrchr(slash ? slash : pattern, '#');
-    *length = 0;
-    if (!last)
-        return 0;
-    const char *first = last;
-    while (first > pattern && first[-1] == '#')
-        --first;
-    *length = (size_t)(last - first) + 1;
-    return (size_t)(first - pattern);
-}
-
 char *frames_path(const char *pattern, uint32_t frame)
 {
-    size_t length, at = frames_find_marks(pattern, &length), size = strlen(pattern) + 16;
+    size_t length, at = cli_find_marks(pattern, &length), size = strlen(pattern) + 16;
     char *path = length ? malloc(size) : NULL;
     if (path)
         snprintf(path, size, "%.*s%0*u%s", (int)at, pattern, (int)length, frame,
@@ -66,7 +52,7 @@ static bool check_marks(struct cli_reader *reader, const struct render_request *
     bool views = request->cameras.file != NULL;
     size_t length = 0;
     if (file)
-        frames_find_marks(file, &length);
+        cli_find_marks(file, &length);
     return !file || length > 0 ||
            cli_misuse(reader,
                       "%s %s: with %s its name needs # for the number of the %s, such as "

@@ -38,9 +38,6 @@ bool frames_read(const struct setting *setting, const char *value, void *request
 /* Checks that the other options go with --frames. */
 bool frames_check(struct cli_reader *reader, const struct job *job,
                   const struct render_request *request);
-/* Finds the last run of # in the name of a file, not in its folders. Gives its offset and *length;
- *length 0: there is none. */
-size_t frames_find_marks(const char *pattern, size_t *length);
 /* `pattern` with its last run of # replaced by the number, zero-padded to at least as many digits.
    free() it; NULL: out of memory, or no #. */
 char *frames_path(const char *pattern, uint32_t frame);

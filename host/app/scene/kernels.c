@@ -38,9 +38,8 @@ static int print_text(const struct job *job, const whit_kernel *kernels, uint32_
     return cli_finish_stdout(EXIT_FINE);
 }
 
-static json_t *kernel_document(const whit_kernel *kernel)
+static void put_kernel(json_t *object, const whit_kernel *kernel)
 {
-    json_t *object = document_object();
     document_text(object, "name", kernel->name);
     document_flag(object, "deferred", kernel->deferred);
     document_count(object, "instructions", kernel->instructions);
@@ -48,7 +47,6 @@ static json_t *kernel_document(const whit_kernel *kernel)
     json_t *told = document_child(object, "driver");
     for (uint32_t i = 0; i < kernel->statistic_count; ++i)
         document_number(told, kernel->statistics[i].name, kernel->statistics[i].value);
-    return object;
 }
 
 static int print_json(const struct job *job, const whit_kernel *kernels, uint32_t count)
@@ -62,7 +60,7 @@ static int print_json(const struct job *job, const whit_kernel *kernels, uint32_
     settings_describe(&job->settings, IN_SCENE, document_child(root, "picture"));
     json_t *list = document_list(root, "kernels");
     for (uint32_t i = 0; i < count; ++i)
-        document_append(list, kernel_document(&kernels[i]));
+        put_kernel(document_entry(list), &kernels[i]);
     return cli_print_json(root);
 }
 

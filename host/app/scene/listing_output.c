@@ -1,11 +1,10 @@
 #include "app/document.h"
 #include "app/scene/listing.h"
 
-static json_t *mesh_document(const whit_scene *scene, uint32_t index)
+static void put_mesh(json_t *object, const whit_scene *scene, uint32_t index)
 {
     whit_mesh_info mesh;
     whit_scene_get_mesh(scene, index, &mesh);
-    json_t *object = document_object();
     document_text(object, "name", mesh.name);
     document_count(object, "vertices", mesh.vertex_count);
     document_count(object, "triangles", mesh.triangle_count);
@@ -14,25 +13,21 @@ static json_t *mesh_document(const whit_scene *scene, uint32_t index)
     document_flag(object, "normals", mesh.has_normals);
     document_flag(object, "uvs", mesh.has_uvs);
     document_flag(object, "colors", mesh.has_colors);
-    return object;
 }
 
-static json_t *instance_document(const whit_scene *scene, uint32_t index)
+static void put_instance(json_t *object, const whit_scene *scene, uint32_t index)
 {
     whit_instance_info instance;
     whit_scene_get_instance(scene, index, &instance);
-    json_t *object = document_object();
     document_text(object, "name", instance.name);
     document_count(object, "mesh", instance.mesh);
     document_numbers(object, "object_to_world", instance.object_to_world, 12);
-    return object;
 }
 
-static json_t *material_document(const whit_scene *scene, uint32_t index)
+static void put_material(json_t *object, const whit_scene *scene, uint32_t index)
 {
     whit_material_info material;
     whit_scene_get_material(scene, index, &material);
-    json_t *object = document_object();
     document_text(object, "name", material.name);
     document_text(object, "file", material.file);
     document_count(object, "line", material.line);
@@ -52,28 +47,24 @@ static json_t *material_document(const whit_scene *scene, uint32_t index)
     document_float(object, "metallic", material.metallic);
     document_float(object, "roughness", material.roughness);
     document_count(object, "textures", material.texture_count);
-    return object;
 }
 
-static json_t *light_document(const whit_scene *scene, uint32_t index)
+static void put_light(json_t *object, const whit_scene *scene, uint32_t index)
 {
     whit_light_info light;
     whit_scene_get_light(scene, index, &light);
-    json_t *object = document_object();
     document_text(object, "name", light.name);
     document_text(object, "kind", whit_light_kind_name(light.kind));
     document_numbers(object, "position", light.position, 3);
     document_numbers(object, "direction", light.direction, 3);
     document_floats(object, "color", light.color, 3);
     document_flag(object, "made_by_whit", light.made_by_whit);
-    return object;
 }
 
-static json_t *camera_document(const whit_scene *scene, uint32_t index)
+static void put_camera(json_t *object, const whit_scene *scene, uint32_t index)
 {
     whit_camera_info camera;
     whit_scene_get_camera(scene, index, &camera);
-    json_t *object = document_object();
     document_text(object, "name", camera.name);
     document_text(object, "kind", whit_camera_kind_name(camera.kind));
     document_numbers(object, "eye", camera.eye, 3);
@@ -84,36 +75,31 @@ static json_t *camera_document(const whit_scene *scene, uint32_t index)
     document_number(object, "lens", camera.lens_radius);
     document_number(object, "focus", camera.focus_distance);
     document_flag(object, "made_by_whit", camera.made_by_whit);
-    return object;
 }
 
-static json_t *effect_document(const whit_scene *scene, uint32_t index)
+static void put_effect(json_t *object, const whit_scene *scene, uint32_t index)
 {
     whit_effect_info effect;
     whit_scene_get_effect(scene, index, &effect);
-    json_t *object = document_object();
     document_text(object, "name", effect.name);
     document_flag(object, "called", effect.called);
     document_text(object, "reason", effect.reason);
-    return object;
 }
 
-static json_t *note_document(const whit_scene *scene, uint32_t index)
+static void put_note(json_t *object, const whit_scene *scene, uint32_t index)
 {
     whit_note_info note;
     whit_scene_get_note(scene, index, &note);
-    json_t *object = document_object();
     document_text(object, "level", note.warning ? "warning" : "info");
     document_text(object, "text", note.text);
-    return object;
 }
 
 static void put_list(json_t *root, const char *key, const whit_scene *scene, uint32_t count,
-                     json_t *(*describe)(const whit_scene *scene, uint32_t index))
+                     void (*put)(json_t *object, const whit_scene *scene, uint32_t index))
 {
     json_t *list = document_list(root, key);
     for (uint32_t i = 0; i < count; ++i)
-        document_append(list, describe(scene, i));
+        put(document_entry(list), scene, i);
 }
 
 static json_t *bounds_document(const whit_scene_info *info)
@@ -145,12 +131,12 @@ int listing_print_json(const struct job *job, const whit_scene_info *info)
     json_t *environment = document_child(root, "environment");
     document_text(environment, "kind", whit_environment_kind_name(info->environment));
     document_flag(environment, "made_by_whit", info->environment_made_by_whit);
-    put_list(root, "meshes", job->scene, info->mesh_count, mesh_document);
-    put_list(root, "instances", job->scene, info->instance_count, instance_document);
-    put_list(root, "materials", job->scene, info->material_count, material_document);
-    put_list(root, "lights", job->scene, info->light_count, light_document);
-    put_list(root, "cameras", job->scene, info->camera_count, camera_document);
-    put_list(root, "effects", job->scene, info->effect_count, effect_document);
-    put_list(root, "notes", job->scene, info->note_count, note_document);
+    put_list(root, "meshes", job->scene, info->mesh_count, put_mesh);
+    put_list(root, "instances", job->scene, info->instance_count, put_instance);
+    put_list(root, "materials", job->scene, info->material_count, put_material);
+    put_list(root, "lights", job->scene, info->light_count, put_light);
+    put_list(root, "cameras", job->scene, info->camera_count, put_camera);
+    put_list(root, "effects", job->scene, info->effect_count, put_effect);
+    put_list(root, "notes", job->scene, info->note_count, put_note);
     return cli_print_json(root);
 }

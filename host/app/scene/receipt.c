@@ -177,10 +177,9 @@ static json_t *times_document(const struct sample_median *times, uint32_t rounds
     return object;
 }
 
-static json_t *row_document(const struct receipt *receipt, const whit_effect_info *effect,
-                            const struct cost_effect *row)
+static void put_row(json_t *object, const struct receipt *receipt, const whit_effect_info *effect,
+                    const struct cost_effect *row)
 {
-    json_t *object = document_object(), *difference = NULL;
     const struct sample_median cost = cost_of(row);
     document_text(object, "name", effect->name);
     document_flag(object, "called", effect->called);
@@ -189,13 +188,13 @@ static json_t *row_document(const struct receipt *receipt, const whit_effect_inf
     document_flag(object, "asked", !is_left_out(receipt, effect, row));
     document_put(object, "cost_ms",
                  row->priced ? times_document(&cost, row->price.rounds) : json_null());
-    if (row->priced) {
-        difference = document_object();
-        document_count(difference, "pixels", row->error.differing_pixels);
-        document_number(difference, "largest", row->error.largest);
+    if (!row->priced) {
+        document_put(object, "difference", json_null());
+        return;
     }
-    document_put(object, "difference", difference ? difference : json_null());
-    return object;
+    json_t *difference = document_child(object, "difference");
+    document_count(difference, "pixels", row->error.differing_pixels);
+    document_number(difference, "largest", row->error.largest);
 }
 
 static int print_json(const struct receipt *receipt)
@@ -219,7 +218,7 @@ static int print_json(const struct receipt *receipt)
     for (uint32_t i = 0; i < receipt->row_count; ++i) {
         whit_effect_info effect;
         whit_scene_get_effect(receipt->job->scene, i, &effect);
-        document_append(effects, row_document(receipt, &effect, &receipt->rows[i]));
+        put_row(document_entry(effects), receipt, &effect, &receipt->rows[i]);
     }
     return cli_print_json(root);
 }

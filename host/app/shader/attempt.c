@@ -180,16 +180,15 @@ void attempt_print(const struct attempt *attempt)
         printf("  expected: %s == base\n", info->expectations[i].word);
 }
 
-static json_t *describe_check(const whit_shader_check *check, const whit_check_result *result)
+static void put_check(json_t *object, const whit_shader_check *check,
+                      const whit_check_result *result)
 {
-    json_t *object = document_object();
     document_text(object, "text", check->text);
     document_text(object, "file", check->file);
     document_count(object, "line", check->line);
     document_flag(object, "reached", result->reached);
     document_count(object, "failed", result->failed);
     document_count(object, "first_seed", result->first_seed);
-    return object;
 }
 
 static json_t *describe_tests(const struct attempt *attempt)
@@ -205,7 +204,7 @@ static json_t *describe_tests(const struct attempt *attempt)
         document_count(object, "seeds", WHIT_TEST_SEEDS);
         json_t *checks = document_list(object, "checks");
         for (uint32_t c = test->first_check; c < test->first_check + test->check_count; ++c)
-            document_append(checks, describe_check(&info->checks[c], &attempt->checks[c]));
+            put_check(document_entry(checks), &info->checks[c], &attempt->checks[c]);
     }
     return list;
 }

@@ -120,10 +120,9 @@ static void print_text(const whit_shader *shader, const char *path)
         printf("  trusted: loops and indices are not bounded\n");
 }
 
-static json_t *describe_slider(const whit_slider *slider)
+static void put_slider(json_t *object, const whit_slider *slider)
 {
     char value[64];
-    json_t *object = document_object();
     write_value(slider, value, sizeof value);
     document_text(object, "name", slider->name);
     document_text(object, "kind", kind_words[slider->kind]);
@@ -133,7 +132,6 @@ static json_t *describe_slider(const whit_slider *slider)
         document_float(object, "min", slider->min);
         document_float(object, "max", slider->max);
     }
-    return object;
 }
 
 static json_t *list_texts(const char *const *texts, uint32_t count)
@@ -169,7 +167,7 @@ static int print_json(const whit_shader *shader, const struct attempt *attempt)
     document_put(object, "aovs", list_texts(info.aovs, info.aov_count));
     json_t *sliders = document_list(object, "sliders");
     for (uint32_t i = 0; i < info.slider_count; ++i)
-        document_append(sliders, describe_slider(&info.sliders[i]));
+        put_slider(document_entry(sliders), &info.sliders[i]);
     document_put(object, "kernels", list_kernels(shader));
     document_count(object, "instructions", info.instructions);
     document_flag(object, "trusted", info.fuel == 0);
