@@ -43,12 +43,11 @@ whit_result whit_accel_create(const whit_scene *scene, const whit_accel_params *
         api_one_tree(scene, params->instances) ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON;
     inner.validate |= ALWAYS_VALIDATE;
     result = accel_create(&scene->log, scene->scene, &inner, &accel->accel);
-    if (result != WHIT_OK) {
+    if (result == WHIT_OK)
+        *out = accel;
+    else
         whit_accel_destroy(accel);
-        return result;
-    }
-    *out = accel;
-    return WHIT_OK;
+    return result;
 }
 
 void whit_accel_destroy(whit_accel *accel)

@@ -20,12 +20,11 @@ whit_result whit_device_create(const whit_device_params *params, const whit_log 
         return API_FAIL(log, WHIT_ERROR_MEMORY, "out of memory");
     device->log = log_or_silence(log);
     whit_result result = device_create(&device->log, params, NULL, &device->device);
-    if (result != WHIT_OK) {
+    if (result == WHIT_OK)
+        *out = device;
+    else
         whit_device_destroy(device);
-        return result;
-    }
-    *out = device;
-    return WHIT_OK;
+    return result;
 }
 
 /* ---- In a thread ---- */

@@ -106,12 +106,11 @@ whit_result whit_judge_create(const whit_scene *scene, const whit_judge_params *
         return WHIT_ERROR_MEMORY;
     judge->log = log_or_silence(log);
     whit_result result = fill(judge, scene, params ? params : &defaults);
-    if (result != WHIT_OK) {
+    if (result == WHIT_OK)
+        *out = judge;
+    else
         whit_judge_destroy(judge);
-        return result;
-    }
-    *out = judge;
-    return WHIT_OK;
+    return result;
 }
 
 void whit_judge_destroy(whit_judge *judge)

@@ -25,12 +25,11 @@ whit_result whit_reference_create(whit_accel *accel, const whit_renderer_params 
     reference->accel = accel->accel;
     reference->params = inner.picture;
     whit_result result = reference_create(&accel->log, accel->accel, &inner, &reference->reference);
-    if (result != WHIT_OK) {
+    if (result == WHIT_OK)
+        *out = reference;
+    else
         whit_reference_destroy(reference);
-        return result;
-    }
-    *out = reference;
-    return WHIT_OK;
+    return result;
 }
 
 void whit_reference_destroy(whit_reference *reference)

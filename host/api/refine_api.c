@@ -54,12 +54,11 @@ whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_para
     refine->log = renderer->log;
     whit_refine_move(refine, renderer, params);
     result = whit_renderer_set_view(renderer, &refine->params);
-    if (result != WHIT_OK) {
+    if (result == WHIT_OK)
+        *out = refine;
+    else
         whit_refine_destroy(refine);
-        return result;
-    }
-    *out = refine;
-    return WHIT_OK;
+    return result;
 }
 
 void whit_refine_move(whit_refine *refine, whit_renderer *renderer,

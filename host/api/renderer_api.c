@@ -93,12 +93,11 @@ whit_result whit_renderer_create(whit_device *device, whit_accel *accel,
         result = renderer_create(&log, device->device, accel->accel, &params, &renderer->renderer);
     else if ((result = params_check(&log, &renderer->params)) == WHIT_OK)
         result = pose_on_cpu(accel->accel, params.time_s);
-    if (result != WHIT_OK) {
+    if (result == WHIT_OK)
+        *out = renderer;
+    else
         whit_renderer_destroy(renderer);
-        return result;
-    }
-    *out = renderer;
-    return WHIT_OK;
+    return result;
 }
 
 void whit_renderer_destroy(whit_renderer *renderer)

@@ -72,15 +72,6 @@ const struct setting_value values_rays[] = {
     {"reflected", WHIT_RAY_REFLECTED, NULL}, {"refracted", WHIT_RAY_REFRACTED, NULL},
     {"all", WHIT_RAY_KINDS, NULL},           {0}};
 
-uint32_t value_place(const struct setting_value *values, int value)
-{
-    for (uint32_t i = 0; values[i].word; ++i) {
-        if (values[i].value == value)
-            return i;
-    }
-    return WHIT_NONE;
-}
-
 uint32_t value_find(const struct setting_value *values, const char *word)
 {
     for (uint32_t i = 0; values[i].word; ++i) {
@@ -90,16 +81,23 @@ uint32_t value_find(const struct setting_value *values, const char *word)
     return WHIT_NONE;
 }
 
+static const struct setting_value *find_value(const struct setting_value *values, int value)
+{
+    while (values->word && values->value != value)
+        ++values;
+    return values;
+}
+
 const char *value_word(const struct setting_value *values, int value)
 {
-    uint32_t i = value_place(values, value);
-    return i == WHIT_NONE ? "" : values[i].word;
+    const struct setting_value *found = find_value(values, value);
+    return found->word ? found->word : "";
 }
 
 const char *value_title(const struct setting_value *values, int value)
 {
-    uint32_t i = value_place(values, value);
-    return i != WHIT_NONE && values[i].title ? values[i].title : value_word(values, value);
+    const struct setting_value *found = find_value(values, value);
+    return found->title ? found->title : value_word(values, value);
 }
 
 uint32_t value_count(const struct setting_value *values)

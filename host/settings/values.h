@@ -37,10 +37,8 @@ extern const struct setting_value values_rays[];            /* whit_ray_kind; WH
 /* The word of a value, and its title; "" where the list lacks it. */
 const char *value_word(const struct setting_value *values, int value);
 const char *value_title(const struct setting_value *values, int value);
-/* The index in the list of a word (value_find) or a value (value_place); WHIT_NONE where the list
-   lacks it. */
+/* The index of a word in the list; WHIT_NONE where the list lacks it. */
 uint32_t value_find(const struct setting_value *values, const char *word);
-uint32_t value_place(const struct setting_value *values, int value);
 uint32_t value_count(const struct setting_value *values);
 /* Writes all words with `separator` between them, cut to `text_bytes`; gives `text`. */
 const char *value_list(const struct setting_value *values, const char *separator, char *text,

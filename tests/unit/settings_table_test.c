@@ -1,56 +1,40 @@
 /* Tests every row of the table of settings. With an argument it prints, for
    tests/cli/settings_test.sh, a line for each row, with another value than the default: name,
    value, commands, change, key, title, key in JSON, separated by tabs. */
+#include <math.h>
+
 #include "settings/settings.h"
 #include "unit.h"
 
 /* Text for the option that gives it another value than the default. */
 static void other_text(const struct setting *row, char text[SETTING_VALUE_BYTES])
 {
-    char usual[SETTING_VALUE_BYTES];
+    static const char *const of_names[][2] = {
+        {"environment", "sky.pfm"}, {"shader", "bright.glsl"},
+        {"stages", "stages"},       {"aov", "gray"},
+        {"effects", "-textures"},   {"background", "#ffcc88"}};
+    static const char *const of_kinds[] = {
+        [SETTING_BYTES] = "8G",     [SETTING_SIZE] = "24x17",
+        [SETTING_TEXT] = "0",       [SETTING_PAIRS] = "bright=1.5,tint=on",
+        [SETTING_FOLDERS] = "/tmp", [SETTING_HELP] = NULL};
     const struct settings settings = settings_usual();
+    const void *at = (const char *)&settings + row->offset;
+    char usual[SETTING_VALUE_BYTES];
     setting_write(row, &settings, 0, usual);
-    double number = row->kind == SETTING_NUMBER
-                        ? *(const double *)((const char *)&settings + row->offset)
-                        : 0.0;
-    switch (row->kind) {
-    case SETTING_COUNT:
+    strcpy(text, of_kinds[row->kind] ? of_kinds[row->kind] : "12");
+    if (row->kind == SETTING_COUNT)
         snprintf(text, SETTING_VALUE_BYTES, "%.0f", row->max > 100.0 ? 64.0 : row->max);
-        return;
-    case SETTING_NUMBER:
-        setting_write_number(number + 0.5 <= row->max ? number + 0.5 : row->max, text,
-                             SETTING_VALUE_BYTES);
-        return;
-    case SETTING_BYTES:
-        strcpy(text, "8G");
-        return;
-    case SETTING_SIZE:
-        strcpy(text, "24x17");
-        return;
-    case SETTING_TEXT:
-        strcpy(text, strcmp(row->name, "environment") == 0 ? "sky.pfm"
-                     : strcmp(row->name, "shader") == 0    ? "bright.glsl"
-                     : strcmp(row->name, "stages") == 0    ? "stages"
-                     : strcmp(row->name, "aov") == 0       ? "gray"
-                                                           : "0");
-        return;
-    case SETTING_PAIRS:
-        strcpy(text, "bright=1.5,tint=on");
-        return;
-    case SETTING_FOLDERS:
-        strcpy(text, "/tmp");
-        return;
-    default:
-        break;
+    if (row->kind == SETTING_NUMBER)
+        setting_write_number(fmin(*(const double *)at + 0.5, row->max), text, SETTING_VALUE_BYTES);
+    for (const struct setting_value *value = row->values; value && value->word; ++value) {
+        if (strcmp(value->word, usual) != 0) {
+            strcpy(text, value->word);
+            break;
+        }
     }
-    strcpy(text, strcmp(row->name, "effects") == 0      ? "-textures"
-                 : strcmp(row->name, "background") == 0 ? "#ffcc88"
-                                                        : "12");
-    for (const struct setting_value *value = row->values;
-         value && value->word && strcmp(text, "-textures") != 0; ++value) {
-        strcpy(text, value->word);
-        if (strcmp(value->word, usual) != 0)
-            return;
+    for (size_t i = 0; i < sizeof of_names / sizeof *of_names; ++i) {
+        if (strcmp(row->name, of_names[i][0]) == 0)
+            strcpy(text, of_names[i][1]);
     }
 }
 

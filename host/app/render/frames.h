@@ -2,8 +2,8 @@
 #ifndef APP_RENDER_FRAMES_H
 #define APP_RENDER_FRAMES_H
 
-#include "app/arguments.h"
 #include "app/job.h"
+#include "app/render/refine.h"
 
 struct render_request;
 
@@ -21,7 +21,8 @@ struct frame_times {
     double upload_ms, render_ms, save_ms;
 };
 
-/* The times and statistics of a sequence. `each` has the times of each frame, for --stats only. */
+/* The times and statistics of a sequence, or of one picture. `each` has the times of each frame,
+ * for --stats only. */
 struct sequence {
     struct frame_times *each;
     struct frame_times median;
@@ -29,7 +30,8 @@ struct sequence {
     uint32_t written, kept; /* numbers of frames; kept: finished before this run */
     bool left;              /* another process draws the picture: render_request.leaves */
     double save_ms;
-    whit_stats stats; /* summed over frames; upload_ms is that before the first frame */
+    whit_stats stats;       /* summed over frames; upload_ms is that before the first frame */
+    struct refined refined; /* of one picture, with --refine */
 };
 
 /* setting.read of --frames, into a render_request. */

@@ -135,7 +135,7 @@ static whit_result finish(struct job *job, const struct refine_goal *goal,
 
 whit_result refine_render(struct job *job, const struct render_request *request,
                           whit_renderer *renderer, struct frames_progress *progress,
-                          struct refined *refined, struct drawn_images *images, whit_stats *stats)
+                          struct drawn_images *images, struct sequence *sequence)
 {
     const whit_renderer_params params = job_picture(job);
     const struct refine_goal *goal = &request->refine;
@@ -150,9 +150,9 @@ whit_result refine_render(struct job *job, const struct render_request *request,
             result = whit_renderer_image(renderer, WHIT_AOV_IDS, &images->ids);
     }
     if (result == WHIT_OK)
-        result = finish(job, goal, &steps, refined, images);
+        result = finish(job, goal, &steps, &sequence->refined, images);
     whit_refine_destroy(steps.refine);
-    *stats = steps.stats;
+    sequence->stats = steps.stats;
     if (result != WHIT_OK)
         drawn_images_finish(images);
     return result;

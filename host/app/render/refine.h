@@ -8,6 +8,7 @@
 
 struct render_request;
 struct frames_progress;
+struct sequence;
 
 /* The limits at which refining ends: with --refine one of the two is above 0, else both are 0. */
 struct refine_goal {
@@ -34,12 +35,12 @@ bool refine_check(struct cli_reader *reader, const struct job *job,
 enum { REFINE_SAMPLES_USUAL = 64 };
 
 /* Draws until request->refine is met. Gives *images, with the ids of the first sample where
-   `request` or edges need them, and the `stats` of all steps. Sets the job's number of samples to
-   that of the picture, so that its recipe draws it again. After an error there are no images. */
+   `request` or edges need them, and in *sequence the stats of all steps and how it ended. Sets the
+   job's number of samples to that of the picture, so that its recipe draws it again. After an error
+   there are no images. */
 WHIT_CHECK whit_result refine_render(struct job *job, const struct render_request *request,
                                      whit_renderer *renderer, struct frames_progress *progress,
-                                     struct refined *refined, struct drawn_images *images,
-                                     whit_stats *stats);
+                                     struct drawn_images *images, struct sequence *sequence);
 
 /* Prints samples and error, as a note where the goal was reached, else as an error. */
 void refine_say(const struct refine_goal *goal, const struct refined *refined);

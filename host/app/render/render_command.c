@@ -422,24 +422,23 @@ static void say_done(const struct job *job, const struct render_request *request
 
 static whit_result draw_one(struct job *job, const struct render_request *request,
                             whit_renderer *renderer, struct frames_progress *progress,
-                            struct refined *refined, struct drawn_images *images, whit_stats *stats)
+                            struct drawn_images *images, struct sequence *sequence)
 {
     *images = (struct drawn_images){0};
     if (refine_is_wanted(&request->refine))
-        return refine_render(job, request, renderer, progress, refined, images, stats);
+        return refine_render(job, request, renderer, progress, images, sequence);
     whit_result result = whit_renderer_render(renderer);
     if (result == WHIT_OK)
-        whit_renderer_get_stats(renderer, stats);
+        whit_renderer_get_stats(renderer, &sequence->stats);
     return result;
 }
 
 static whit_result draw_and_save(struct job *job, const struct render_request *request,
                                  whit_renderer *renderer, struct frames_progress *progress,
-                                 struct refined *refined, struct sequence *sequence)
+                                 struct sequence *sequence)
 {
     struct drawn_images images;
-    whit_result result =
-        draw_one(job, request, renderer, progress, refined, &images, &sequence->stats);
+    whit_result result = draw_one(job, request, renderer, progress, &images, sequence);
     cli_progress_finish(&progress->bar);
     if (result != WHIT_OK)
         return result;
@@ -454,13 +453,13 @@ static whit_result draw_and_save(struct job *job, const struct render_request *r
 
 static whit_result render_one(struct job *job, const struct render_request *request,
                               whit_renderer *renderer, struct frames_progress *progress,
-                              struct refined *refined, struct sequence *sequence)
+                              struct sequence *sequence)
 {
     enum resume_state state = RESUME_OTHERS;
     struct lock lock = {0};
     whit_result result = WHIT_OK;
     if (!request->resume)
-        return draw_and_save(job, request, renderer, progress, refined, sequence);
+        return draw_and_save(job, request, renderer, progress, sequence);
     while (result == WHIT_OK && state == RESUME_OTHERS) {
         result = resume_begin(job, request, &state, &lock);
         if (request->leaves)
@@ -469,7 +468,7 @@ static whit_result render_one(struct job *job, const struct render_request *requ
             result = resume_wait();
     }
     if (result == WHIT_OK && state == RESUME_DRAW)
-        result = draw_and_save(job, request, renderer, progress, refined, sequence);
+        result = draw_and_save(job, request, renderer, progress, sequence);
     lock_give_back(&lock);
     sequence->kept = result == WHIT_OK && state == RESUME_KEPT;
     sequence->left = result == WHIT_OK && state == RESUME_OTHERS;
@@ -494,13 +493,13 @@ int render_draw(struct job *job, const struct render_request *request, whit_rend
                 struct frames_progress *progress, struct sequence *sequence)
 {
     const struct frames *frames = &request->frames;
-    struct refined refined = {0};
+    const struct refined *refined = &sequence->refined;
     progress->count = frames->last - frames->first + 1;
     progress->done = 0;
-    whit_result result =
-        request->cameras.file ? cameras_render(job, request, renderer, progress, sequence)
-        : frames->given       ? frames_render(job, request, renderer, progress, sequence)
-                              : render_one(job, request, renderer, progress, &refined, sequence);
+    whit_result result = request->cameras.file
+                             ? cameras_render(job, request, renderer, progress, sequence)
+                         : frames->given ? frames_render(job, request, renderer, progress, sequence)
+                                         : render_one(job, request, renderer, progress, sequence);
     cli_progress_finish(&progress->bar);
     if (result != WHIT_OK) {
         int failed = cli_exit_of(result);
@@ -515,12 +514,10 @@ int render_draw(struct job *job, const struct render_request *request, whit_rend
     if (sequence->kept && is_told(job))
         cli_note("%s: %u finished picture%s kept", request->output, sequence->kept,
                  sequence->kept == 1 ? " was" : "s were");
-    int status = stats_print(job, request, renderer, &sequence->stats, sequence->save_ms,
-                             frames->given && !request->cameras.file ? sequence : NULL,
-                             refined.now.samples ? &refined : NULL);
-    bool missed = refined.now.samples && !refined.reached;
-    if (refined.now.samples && (missed || is_told(job)))
-        refine_say(&request->refine, &refined);
+    int status = stats_print(job, request, renderer, sequence);
+    bool missed = refined->now.samples && !refined->reached;
+    if (refined->now.samples && (missed || is_told(job)))
+        refine_say(&request->refine, refined);
     if (missed && status == EXIT_FINE)
         status = EXIT_DIFFERS;
     return status == EXIT_FINE ? job_check_validation(job) : status;

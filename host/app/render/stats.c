@@ -84,11 +84,10 @@ struct figures {
     whit_scene_info scene;
     whit_accel_info tree;
     whit_device_info device;
-    whit_kernel_info kernel; /* zeros where it is not known */
-    const whit_stats *render;
-    const struct sequence *sequence; /* or NULL */
-    const struct refined *refined;   /* likewise */
-    double save_ms;
+    whit_kernel_info kernel;  /* zeros where it is not known */
+    const whit_stats *render; /* of the sequence */
+    const struct sequence *sequence;
+    bool frames; /* the sequence has frames */
 };
 
 static void put_times(json_t *times, const struct job *job, const struct figures *figures)
@@ -101,7 +100,7 @@ static void put_times(json_t *times, const struct job *job, const struct figures
     document_ms(times, "compile_ms", figures->render->compile_ms);
     document_ms(times, "render_ms", figures->render->render_ms);
     document_ms(times, "render_device_ms", document_known(figures->render->render_device_ms));
-    document_ms(times, "save_ms", figures->save_ms);
+    document_ms(times, "save_ms", figures->sequence->save_ms);
     document_ms(times, "total_ms", whit_clock_ms() - job->start_ms);
 }
 
@@ -204,7 +203,7 @@ static void put_pixels(json_t *pixels, const struct figures *figures)
 
 static void put_refined(json_t *object, const struct figures *figures)
 {
-    const struct refined *refined = figures->refined;
+    const struct refined *refined = &figures->sequence->refined;
     document_count(object, "samples", refined->now.samples);
     document_number(object, "rmse_estimate", document_known(refined->now.error));
     document_number(object, "rmse_estimate_of_cuts", document_known(refined->now.error_of_cuts));
@@ -265,9 +264,9 @@ static int print_json(const struct job *job, const struct render_request *reques
     if (job->settings.paint != PAINT_COLOR || request->counters)
         put_costs(document_child(root, "costs"), figures->render);
     put_tree(document_child(root, "tree"), &figures->tree);
-    if (figures->refined)
+    if (figures->sequence->refined.now.samples)
         put_refined(document_child(root, "refine"), figures);
-    if (figures->sequence)
+    if (figures->frames)
         put_frames(document_child(root, "frames"), job, figures->sequence);
     if (part_is_given(&request->part))
         document_put(root, "part", part_document(&request->part, &job->settings));
@@ -301,7 +300,7 @@ static void print_times(const struct job *job, const struct figures *figures)
     print_time("render", figures->render->render_ms);
     if (figures->render->render_device_ms >= 0.0)
         print_time("  on the device", figures->render->render_device_ms);
-    print_time("save", figures->save_ms);
+    print_time("save", figures->sequence->save_ms);
     print_time("total", whit_clock_ms() - job->start_ms);
 }
 
@@ -378,7 +377,7 @@ static void print_samples(const struct figures *figures)
 
 static void print_refined(const struct figures *figures)
 {
-    const struct refined *refined = figures->refined;
+    const struct refined *refined = &figures->sequence->refined;
     printf("refined\n  %u samples a pixel", refined->now.samples);
     if (refined->now.error >= 0.0)
         printf(", an RMSE of %.3g may be left, %.3g of it of rays that were cut",
@@ -451,7 +450,7 @@ static int print_text(const struct job *job, const struct render_request *reques
     print_stages(job, figures);
     if (picture->sampling.kind == WHIT_SAMPLING_ADAPTIVE)
         print_samples(figures);
-    if (figures->refined)
+    if (figures->sequence->refined.now.samples)
         print_refined(figures);
     print_kernel(figures);
     if (job->settings.paint != PAINT_COLOR || request->counters)
@@ -459,7 +458,7 @@ static int print_text(const struct job *job, const struct render_request *reques
     printf("trees\n  %s%u nodes, %u leaves, %u triangles, depth %u + %u, SAH cost %.2f\n",
            tree->one_tree ? "one in world space: " : "", tree->node_count, tree->leaf_count,
            tree->triangle_count, tree->instance_depth, tree->depth, tree->sah_cost);
-    if (figures->sequence)
+    if (figures->frames)
         print_frames(figures->sequence);
     printf("work\n  %u dispatches, %u tiles of %u pixels a side, trees through %s loads%s\n",
            figures->render->dispatches, figures->render->tiles, figures->render->tile_size,
@@ -474,11 +473,11 @@ static int print_text(const struct job *job, const struct render_request *reques
 }
 
 int stats_print(const struct job *job, const struct render_request *request,
-                const whit_renderer *renderer, const whit_stats *stats, double save_ms,
-                const struct sequence *sequence, const struct refined *refined)
+                const whit_renderer *renderer, const struct sequence *sequence)
 {
-    struct figures figures = {
-        .render = stats, .sequence = sequence, .refined = refined, .save_ms = save_ms};
+    struct figures figures = {.render = &sequence->stats,
+                              .sequence = sequence,
+                              .frames = request->frames.given && !request->cameras.file};
     if (job->settings.stats == STATS_NONE)
         return EXIT_FINE;
     whit_scene_get_info(job->scene, &figures.scene);

@@ -7,10 +7,8 @@
 /* Prints `label`, the device's name and its driver as a line. */
 void stats_print_device(const char *label, const whit_device *device);
 
-/* --stats of `whit render`: on standard output. `sequence`: with --frames, else NULL; `refined`:
-   with --refine, else NULL. */
+/* --stats of `whit render`: on standard output. Gives the exit code. */
 int stats_print(const struct job *job, const struct render_request *request,
-                const whit_renderer *renderer, const whit_stats *stats, double save_ms,
-                const struct sequence *sequence, const struct refined *refined);
+                const whit_renderer *renderer, const struct sequence *sequence);
 
 #endif
