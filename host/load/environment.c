@@ -67,9 +67,14 @@ static whit_result linearize(const whit_log *log, const char *path, struct pictu
     return WHIT_OK;
 }
 
+static uint64_t cost_of(uint32_t width, uint32_t height)
+{
+    return scene_texel_cost(3 * (uint64_t)width, height);
+}
+
 static bool afford(struct scene *scene, const char *path, const struct picture *picture)
 {
-    return scene_afford(scene, scene_texel_cost(3 * (uint64_t)picture->width, picture->height),
+    return scene_afford(scene, cost_of(picture->width, picture->height),
                         "environment `%s` of %ux%u pixels", text_token(path_name(path)).text,
                         picture->width, picture->height);
 }
@@ -129,22 +134,20 @@ whit_result load_environment(struct scene *scene, const char *path, const whit_l
         result = WHIT_ERROR_INPUT;
         goto fail;
     }
+    uint64_t whole_cost = cost_of(picture.width, picture.height);
     if (!picture_shrink(&picture, SIDE_MAX)) {
         log_error(log, "%s: out of memory", path);
         result = WHIT_ERROR_MEMORY;
         goto fail;
     }
+    scene_give_back(scene, whole_cost - cost_of(picture.width, picture.height));
+    load_drop_environment(scene);
     struct scene_environment *sky = &scene->environment;
-    free(sky->rgb);
-    free(sky->name);
-    *sky = (struct scene_environment){
-        .kind = WHIT_ENVIRONMENT_MAP,
-        .scale = {1, 1, 1},
-        .width = picture.width,
-        .height = picture.height,
-        .rgb = picture.rgb,
-        .name = found,
-    };
+    sky->kind = WHIT_ENVIRONMENT_MAP;
+    sky->width = picture.width;
+    sky->height = picture.height;
+    sky->rgb = picture.rgb;
+    sky->name = found;
     scene->has_environment = true;
     scene->file_bytes += bytes_of(sky->name);
     return WHIT_OK;

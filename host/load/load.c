@@ -59,6 +59,15 @@ static whit_result read_model(struct scene *scene, const char *path, const whit_
                : result;
 }
 
+void load_drop_environment(struct scene *scene)
+{
+    struct scene_environment *sky = &scene->environment;
+    scene_give_back(scene, scene_texel_cost(3 * (uint64_t)sky->width, sky->height));
+    free(sky->rgb);
+    free(sky->name);
+    *sky = (struct scene_environment){.scale = {1, 1, 1}};
+}
+
 /* Puts --environment or --background in the place of the file's environment. */
 static whit_result replace_sky(struct scene *scene, const whit_load_params *params)
 {
@@ -74,9 +83,7 @@ static whit_result replace_sky(struct scene *scene, const whit_load_params *para
     }
     if (!params->has_background)
         return WHIT_OK;
-    free(sky->rgb);
-    free(sky->name);
-    *sky = (struct scene_environment){.kind = WHIT_ENVIRONMENT_GRADIENT, .scale = {1, 1, 1}};
+    load_drop_environment(scene);
     for (int i = 0; i < 3; ++i)
         sky->zenith[i] = sky->horizon[i] = sky->ground[i] =
             (float)linear_from_srgb(params->background[i] / 255.0);

@@ -50,5 +50,7 @@ WHIT_CHECK whit_result load_texture(struct scene *scene, const char *path, const
 /* Reads a Radiance .hdr, .exr, .pfm or 8-bit picture (sRGB) into scene->environment. */
 WHIT_CHECK whit_result load_environment(struct scene *scene, const char *path,
                                         const whit_load_params *params);
+/* Makes the environment a black gradient, and gives back the memory of its map. */
+void load_drop_environment(struct scene *scene);
 
 #endif

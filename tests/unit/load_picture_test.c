@@ -320,6 +320,19 @@ TEST_IN(environments_too_large_are_refused, fixture_begin, fixture_end)
     assert_int_equal(load_environment(fixture.scene, sky, NULL), WHIT_OK);
 }
 
+/* It is halved to 4096 pixels, and the second one takes the place of the first. */
+TEST_IN(environments_take_what_is_kept_of_them, fixture_begin, fixture_end)
+{
+    static const char header[] = "Pf\n8192 1\n-1.0\n";
+    uint8_t file[sizeof header - 1 + 8192 * sizeof(float)] = {0};
+    memcpy(file, header, sizeof header - 1);
+    const char *sky = put_data("a.pfm", file, sizeof file);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(load_environment(fixture.scene, sky, NULL), WHIT_OK);
+        assert_int_equal(fixture.scene->memory_taken, 24 * 4096);
+    }
+}
+
 TEST_IN(decoders_that_reach_out_are_stopped, fixture_begin, fixture_end)
 {
     static const char why[] = "the decoder tried on this file what it may not, and was stopped";
