@@ -381,12 +381,12 @@ static whit_result write_triangles(const struct aiScene **scene,
 
 /* *scene is NULL where assimp has released it. */
 static whit_result write_glb(const struct aiScene **scene, const struct import_request *request,
-                             struct import_counts *counts, void *to, child_write write,
-                             struct foreign_answer *answer)
+                             double metres, struct import_counts *counts, void *to,
+                             child_write write, struct foreign_answer *answer)
 {
     if (!(*scene)->mRootNode) /* assimp 5.2.4 reports no error where it cannot read a 3MF's XML */
         return refuse(answer, "assimp: ", "the file has no model that it can read");
-    const struct aiExportDataBlob *blob = importer_glb(scene, request, counts);
+    const struct aiExportDataBlob *blob = importer_glb(scene, request, metres, counts);
     if (!blob)
         return pass_on_error(answer);
     write_header(counts, 0, to, write);
@@ -402,14 +402,15 @@ whit_result importer_assimp_run(void *user, void *to, child_write write,
     struct library library = {.request = request};
     struct import_counts counts = {0};
     whit_result result = WHIT_OK;
-    if (request->kind == IMPORT_3MF) {
-        const struct import_file *file = &request->files[0];
-        const struct threemf_head head = threemf_read(file->data, file->size_bytes);
-        if (head.refused[0])
-            return refuse(answer, "", head.refused);
-    }
-    const char *refusal = request->kind == IMPORT_DAE ? unread_refusal(request->files) : NULL;
-    if (refusal)
+    struct threemf_head head = {0};
+    if (request->kind == IMPORT_3MF)
+        head = threemf_read(request->files->data, request->files->size_bytes);
+    counts.color_groups = head.color_groups;
+    counts.composites = head.composites;
+    counts.mixed = head.mixed;
+    const char *refusal =
+        request->kind == IMPORT_DAE ? unread_refusal(request->files) : head.refused;
+    if (refusal && refusal[0])
         return refuse(answer, "", refusal);
     const struct aiScene *scene = import(&library);
     if (!scene)
@@ -417,7 +418,7 @@ whit_result importer_assimp_run(void *user, void *to, child_write write,
     if (has_long_face(scene, &counts))
         write_header(&counts, 0, to, write);
     else if (request->kind >= IMPORT_FBX)
-        result = write_glb(&scene, request, &counts, to, write, answer);
+        result = write_glb(&scene, request, head.unit_m, &counts, to, write, answer);
     else
         result = write_triangles(&scene, request, &counts, to, write);
     if (scene)

@@ -12,7 +12,6 @@
 #include "base/file.h"
 #include "image/image.h"
 #include "load/importer_glb.h"
-#include "load/threemf.h"
 #include "load/unread.h"
 
 /* --- units and axes ------------------------------------------------------------------------- */
@@ -66,14 +65,8 @@ static void place_fbx(const struct aiScene *scene, struct aiMatrix4x4 *out)
 }
 
 /* 3MF has z upwards. */
-static void place_3mf(const struct import_file *file, struct import_counts *counts,
-                      struct aiMatrix4x4 *out)
+static void place_3mf(double metres, struct aiMatrix4x4 *out)
 {
-    const struct threemf_head head = threemf_read(file->data, file->size_bytes);
-    double metres = head.unit_m;
-    counts->color_groups = head.color_groups;
-    counts->composites = head.composites;
-    counts->mixed = head.mixed;
     set_row(out, 0, 0, metres);
     set_row(out, 1, 2, metres);
     set_row(out, 2, 1, -metres);
@@ -81,15 +74,14 @@ static void place_3mf(const struct import_file *file, struct import_counts *coun
 
 /* Applies the file's units and axes to the root node. For COLLADA assimp has done so already; OFF
    has neither. */
-static void place(struct aiScene *scene, const struct import_request *request,
-                  struct import_counts *counts)
+static void place(struct aiScene *scene, enum import_kind kind, double metres)
 {
     struct aiMatrix4x4 placed;
     aiIdentityMatrix4(&placed);
-    if (request->kind == IMPORT_FBX)
+    if (kind == IMPORT_FBX)
         place_fbx(scene, &placed);
-    else if (request->kind == IMPORT_3MF)
-        place_3mf(&request->files[0], counts, &placed);
+    else if (kind == IMPORT_3MF)
+        place_3mf(metres, &placed);
     aiMultiplyMatrix4(&placed, &scene->mRootNode->mTransformation);
     scene->mRootNode->mTransformation = placed;
 }
@@ -290,7 +282,7 @@ static void scale_colors(struct aiMesh *mesh)
 }
 
 const struct aiExportDataBlob *importer_glb(const struct aiScene **imported,
-                                            const struct import_request *request,
+                                            const struct import_request *request, double metres,
                                             struct import_counts *counts)
 {
     bool trusted = request->kind != IMPORT_DAE || unread_trusts_sets(&request->files[0]);
@@ -307,7 +299,7 @@ const struct aiExportDataBlob *importer_glb(const struct aiScene **imported,
     drop(scene, request->kind, counts);
     for (unsigned i = 0; request->kind == IMPORT_OFF && i < scene->mNumMeshes; i++)
         scale_colors(scene->mMeshes[i]);
-    place(scene, request, counts);
+    place(scene, request->kind, metres);
     unread_count(request, counts);
     for (unsigned i = 0; i < scene->mNumMaterials; i++) {
         shorten_paths(scene->mMaterials[i]);

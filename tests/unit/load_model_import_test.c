@@ -110,6 +110,10 @@ TEST(reasons_are_one_line)
 
 /* --- PLY and STL ---------------------------------------------------------------------------- */
 
+/* Properties of vertices and of faces. */
+#define XYZ     "property float x\nproperty float y\nproperty float z\n"
+#define CORNERS "property list uchar int vertex_indices\n"
+
 #define PLY_HEADER                                                                                 \
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"                \
     "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"            \
@@ -157,10 +161,8 @@ TEST_IN(blank_lines_in_a_ply, fixture_begin, fixture_end)
 /* A binary PLY whose first data byte is that of a line end. */
 TEST_IN(binary_data_that_looks_like_a_line_end, fixture_begin, fixture_end)
 {
-    static const char header[] =
-        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
-        "property float y\nproperty float z\nelement face 1\n"
-        "property list uchar int vertex_indices\nend_header\n";
+    static const char header[] = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n" XYZ
+                                 "element face 1\n" CORNERS "end_header\n";
     const uint8_t first[4] = {0x0a, 0xf6, 0xbe, 0x40};
     float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const uint8_t face[13] = {3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0};
@@ -304,8 +306,7 @@ TEST_IN(faces_may_stand_in_front_of_vertices, fixture_begin, fixture_end)
     for (int i = 0; i < 2; ++i) {
         char text[512];
         snprintf(text, sizeof text,
-                 "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\n"
-                 "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                 "ply\nformat ascii 1.0\nelement face 1\n" CORNERS "element vertex 3\n" XYZ
                  "end_header\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0%s",
                  ends[i]);
         const struct scene_mesh *mesh = fixture_mesh(put_text("a.ply", text));
@@ -350,11 +351,9 @@ TEST_IN(colors_of_all_types, fixture_begin, fixture_end)
 
 TEST_IN(colors_of_faces_and_materials_are_noted, fixture_begin, fixture_end)
 {
-    const char *text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
-                       "property float y\nproperty float z\nelement face 1\n"
-                       "property list uchar int vertex_indices\nproperty uchar red\n"
-                       "element material 1\nproperty uchar ambient_red\nend_header\n"
-                       "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255\n7\n";
+    const char *text = "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 1\n" CORNERS
+                       "property uchar red\nelement material 1\nproperty uchar "
+                       "ambient_red\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255\n7\n";
     assert_int_equal(fixture_load(put_text("a.ply", text)), WHIT_OK);
     assert_true(fixture_noted("a.ply: colours of 1 faces are not read"));
     assert_true(fixture_noted("a.ply: its materials are not read"));
@@ -364,11 +363,10 @@ TEST_IN(colors_of_faces_and_materials_are_noted, fixture_begin, fixture_end)
 TEST_IN(textures_of_a_ply, fixture_begin, fixture_end)
 {
     put_text("my bricks.png", "no picture");
-    const char *text = "ply\nformat ascii 1.0\ncomment TextureFile dir\\my bricks.png\n"
-                       "comment TextureFile b.png\nelement vertex 3\nproperty float x\n"
-                       "property float y\nproperty float z\nproperty float s\nproperty float t\n"
-                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                       "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
+    const char *text = "ply\nformat ascii 1.0\ncomment TextureFile dir\\my bricks.png\ncomment "
+                       "TextureFile b.png\nelement vertex 3\n" XYZ
+                       "property float s\nproperty float t\nelement face 1\n" CORNERS
+                       "end_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
     const struct scene_mesh *mesh = fixture_mesh(put_text("a.ply", text));
     const struct scene_material *material = &fixture.scene->materials[mesh->materials[0]];
     assert_int_not_equal(material->textures[SCENE_SLOT_DIFFUSE].texture, SCENE_NONE);
@@ -376,10 +374,9 @@ TEST_IN(textures_of_a_ply, fixture_begin, fixture_end)
     assert_true(fixture_noted("texture `my bricks.png`"));
     assert_false(fixture_noted("no such file"));
     assert_true(fixture_noted("a.ply: of its textures only the first is drawn"));
-    static const char zeros[] = "ply\nformat ascii 1.0\ncomment\0TextureFile \0x\n"
-                                "element vertex 3\nproperty uchar\0diffuse_red\n"
-                                "element face 0\nproperty list uchar int vertex_indices\n"
-                                "end_header\n1\n2\n3\n";
+    static const char zeros[] =
+        "ply\nformat ascii 1.0\ncomment\0TextureFile \0x\nelement vertex 3\nproperty "
+        "uchar\0diffuse_red\nelement face 0\n" CORNERS "end_header\n1\n2\n3\n";
     assert_int_equal(fixture_load(put_data("b.ply", zeros, sizeof zeros - 1)), WHIT_ERROR_INPUT);
 }
 
@@ -490,20 +487,16 @@ TEST_IN(refusals_name_the_file, fixture_begin, fixture_end)
 
 TEST_IN(claims_of_endless_memory_are_refused, fixture_begin, fixture_end)
 {
-    const char *path = put_text(
-        "a.ply",
-        "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
-        "property float y\nproperty float z\nelement face 4000000000\n"
-        "property list uchar int vertex_indices\nend_header\n0123456789");
+    const char *path =
+        put_text("a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n" XYZ
+                          "element face 4000000000\n" CORNERS "end_header\n0123456789");
     fixture_refused(path, ".ply:3: 4000000000 elements, but only 10 bytes behind the header");
     path = put_text("b.ply", "ply\nformat ascii 1.0\nelement vertex 300000000\nproperty float x\n"
                              "end_header");
     fixture_refused(path, ".ply:3: 300000000 elements, but only 0 bytes behind the header");
     path =
-        put_text("c.ply", "ply\nformat ascii 1.0\nelement empty 4000000000\nelement vertex 3\n"
-                          "property float x\nproperty float y\nproperty float z\nelement face 1\n"
-                          "property list uchar int vertex_indices\nend_header\n"
-                          "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+        put_text("c.ply", "ply\nformat ascii 1.0\nelement empty 4000000000\nelement vertex 3\n" XYZ
+                          "element face 1\n" CORNERS "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     assert_int_equal(fixture_load(path), WHIT_OK);
 }
 
@@ -511,10 +504,10 @@ TEST_IN(claims_of_endless_memory_are_refused, fixture_begin, fixture_end)
 TEST_IN(long_names_of_ply_elements_are_one_word, fixture_begin, fixture_end)
 {
     const char *path = put_text(
-        "a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-                 "property float z\nelement a23456789b23456789c23456789d2341 0\nproperty float w\n"
-                 "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                 "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+        "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ
+        "element a23456789b23456789c23456789d2341 0\nproperty float w\nelement face 1\n" CORNERS
+        "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     assert_int_equal(fixture_load(path), WHIT_OK);
 }
 
@@ -572,9 +565,8 @@ TEST_IN(faces_of_a_ply_are_counted_too, fixture_begin, fixture_end)
     FILE *file = open_memstream(&text, &bytes);
     assert_non_null(file);
     fprintf(file,
-            "ply\nformat ascii 1.0\nelement vertex 1025\nproperty float x\nproperty float y\n"
-            "property float z\nelement face 2\nproperty list uint uint vertex_indices\n"
-            "end_header\n%s3 0 1 2\n1025",
+            "ply\nformat ascii 1.0\nelement vertex 1025\n" XYZ
+            "element face 2\nproperty list uint uint vertex_indices\nend_header\n%s3 0 1 2\n1025",
             corners);
     for (unsigned i = 0; i < 1025; i++)
         fprintf(file, " %u", i);
@@ -588,10 +580,9 @@ TEST_IN(faces_of_a_ply_are_counted_too, fixture_begin, fixture_end)
 TEST_IN(crashes_stay_in_the_child, fixture_begin, fixture_end)
 {
     const char *path = put_text(
-        "a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
-                 "property float y\nproperty float z\nelement face 1\n"
-                 "property list uchar int vertex_indices\nend_header\n\1\1\1\1\1\1\1\1\1\1\1\1"
-                 "\377\377\377\377\377\377\377\377\377\377\377\377\377");
+        "a.ply",
+        "ply\nformat binary_little_endian 1.0\nelement vertex 1\n" XYZ "element face 1\n" CORNERS
+        "end_header\n\1\1\1\1\1\1\1\1\1\1\1\1\377\377\377\377\377\377\377\377\377\377\377\377\377");
     assert_int_equal(fixture_load(path), WHIT_ERROR_INPUT);
     assert_int_equal(messages.errors, 1);
     assert_non_null(strstr(messages.last_error, path));
