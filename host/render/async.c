@@ -36,6 +36,12 @@ static void job_destroy(struct async_job *job)
     free(job);
 }
 
+void async_finish(struct renderer *renderer)
+{
+    job_destroy(renderer->async.job);
+    renderer->async = (struct async_state){0};
+}
+
 /* NULL when memory or threads run out: the general kernels then stay until the next picture. */
 static struct async_job *job_start(const struct renderer *renderer, const struct gpu_spec *spec)
 {
@@ -66,16 +72,9 @@ static whit_result create_general(struct renderer *renderer, const struct gpu_sp
 /* Puts the kernels of the finished job in place of the general ones. */
 static whit_result take_over(struct renderer *renderer)
 {
-    struct async_job *job = renderer->async.job;
-    if (!stage_set_is_made(&job->set))
-        return WHIT_OK;
-    whit_result result = stages_take(&renderer->picture, &job->set);
-    if (result != WHIT_OK)
-        return result;
-    renderer->async.general = false;
-    job_destroy(job);
-    renderer->async.job = NULL;
-    return WHIT_OK;
+    whit_result result = stages_take(&renderer->picture, &renderer->async.job->set);
+    async_finish(renderer);
+    return result;
 }
 
 whit_result async_prepare(struct renderer *renderer)
@@ -92,17 +91,8 @@ whit_result async_prepare(struct renderer *renderer)
     }
     if (!async->job && memcmp(&own, &general, sizeof own) != 0)
         async->job = job_start(renderer, &own);
-    if (async->job && atomic_load(&async->job->done)) {
-        whit_result result = take_over(renderer);
-        if (result != WHIT_OK || !async->general)
-            return result;
-    }
+    if (async->job && atomic_load(&async->job->done) && stage_set_is_made(&async->job->set))
+        return take_over(renderer);
     return stage_set_is_made(&renderer->picture.stages.set) ? stages_bind(&renderer->picture)
                                                             : create_general(renderer, &general);
-}
-
-void async_finish(struct renderer *renderer)
-{
-    job_destroy(renderer->async.job);
-    renderer->async = (struct async_state){0};
 }

@@ -5,6 +5,7 @@
 
 #include "../wrapped.h"
 #include "base/threads.h"
+#include "device/pipeline.h"
 #include "picture_fixture.h"
 #include "render/variants.h"
 #include "render_scenes.h"
@@ -50,6 +51,20 @@ WRAPPED(void, thread_join, struct thread *thread)
 {
     let_thread_begin();
     __real_thread_join(thread);
+}
+
+static bool refused; /* as when memory runs out */
+
+WRAPPED(whit_result, pipeline_create, struct device *device, const struct pipeline_params *params,
+        struct pipeline **out)
+{
+    return refused ? WHIT_ERROR_MEMORY : __real_pipeline_create(device, params, out);
+}
+
+WRAPPED(whit_result, binding_set_create, struct pipeline *pipeline, struct buffer *const *buffers,
+        uint32_t count, struct binding_set **out)
+{
+    return refused ? WHIT_ERROR_MEMORY : __real_binding_set_create(pipeline, buffers, count, out);
 }
 
 static whit_stats stats_of(const struct renderer *renderer)
@@ -199,4 +214,22 @@ TEST(anything_may_come_in_between)
     assert_true(stats_of(f.renderer).rays_shadow > 0);
     own_image special = render_specialised(&f);
     assert_int_equal(stats_of(f.renderer).rays_shadow, 0);
+}
+
+/* First the kernels of the thread cannot be bound, then neither general nor other kernels made. */
+TEST(kernels_are_made_again_after_errors)
+{
+    whit_renderer_params params = beside_params(glass_camera);
+    own_fixture f = fixture_open(glass_scene(), NULL, &params);
+    own_image before = render_general(&f);
+    let_thread_begin();
+    await_thread();
+    refused = true;
+    for (int i = 0; i < 2; ++i)
+        assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_MEMORY);
+    let_thread_begin();
+    await_thread();
+    refused = false;
+    own_image again = render_general(&f);
+    assert_same_image("again", &before, &again);
 }
