@@ -3,6 +3,7 @@
 #include "accel/pose.h"
 #include "accel/validate.h"
 #include "accel_fixture.h"
+#include "oracle/oracle.h"
 #include "unit.h"
 
 static uint32_t add_sphere(struct scene *scene, uint32_t segments, uint32_t rings)
@@ -179,21 +180,27 @@ TEST(one_instance_at_the_origin_is_told_apart)
     }
 }
 
+/* As a tree over instances, and as a single one. */
 TEST(scenes_without_anything)
 {
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 6; ++k) {
         struct scene *scene = scene_begin(&silent, "test");
-        if (k > 0) {
+        if (k / 2 > 0) {
             uint32_t mesh = scene_put_mesh(scene, (struct scene_mesh){0});
-            for (int i = 1; i < k; ++i)
+            for (int i = 1; i < k / 2; ++i)
                 scene_put_again(scene, mesh, NULL);
         }
-        own_world world = world_of(scene, by_threads(2));
+        own_world world =
+            world_of(scene, (whit_accel_params){.instances = k % 2 ? WHIT_INSTANCES_OFF
+                                                                   : WHIT_INSTANCES_ON});
         const struct accel *accel = world.accel;
         assert_int_equal(accel->instance_root, BVH_EMPTY_REF);
         assert_int_equal(accel->instance_node_count, 0);
         assert_false(accel->single_identity);
         const struct gpu_ray ray = {.dir = {0.1f, 0.2f, -1}, .t_max = INFINITY};
+        struct oracle_hit sure;
+        oracle_trace(accel, &ray, false, &sure);
+        assert_int_equal(sure.primitive, HIT_NONE);
         for (uint32_t order = ORDER_DISTANCE; order <= ORDER_BASIC; ++order)
             assert_int_equal(
                 trace_with(accel, (struct traverse_params){.order = order}, &ray, NULL).primitive,

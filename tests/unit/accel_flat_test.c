@@ -4,8 +4,6 @@
 #include "accel/flat_choice.h"
 #include "accel/pose.h"
 #include "accel/validate.h"
-#include "oracle/oracle.h"
-#include "scene/pose.h"
 #include "unit.h"
 
 static struct scene *new_scene(void)
@@ -122,32 +120,6 @@ TEST(builders_agree_bit_for_bit)
     }
 }
 
-TEST(the_oracle_agrees)
-{
-    own_world world = mixed_world(flatten);
-    const struct accel *accel = world.accel;
-    const uint32_t rays = cases_of(1500);
-    uint32_t sure = 0;
-    random_state = 5;
-    for (uint32_t i = 0; i < rays; ++i) {
-        struct gpu_ray ray = random_ray();
-        struct gpu_hit hit = trace(accel, &ray);
-        struct oracle_hit tree, brute;
-        oracle_trace(accel, &ray, false, &tree);
-        oracle_trace(accel, &ray, true, &brute);
-        assert_int_equal(tree.primitive, brute.primitive);
-        assert_int_equal(tree.instance, brute.instance);
-        if (fabs(tree.edge_margin) < 1.0)
-            continue;
-        ++sure;
-        assert_int_equal(hit.primitive, tree.primitive);
-        assert_int_equal(hit.instance, tree.instance);
-        if (hit.primitive != HIT_NONE)
-            assert_true(fabs((double)hit.t - tree.t) <= tree.t_error);
-    }
-    assert_true(sure > rays * 29 / 30);
-}
-
 /* Checks that a record's vertices were placed in double and rounded once, as by `whit scene
    --triangles`. */
 static void assert_placed(const struct scene *scene, const struct scene_pose *pose,
@@ -256,23 +228,6 @@ TEST(broken_records_are_refused)
         damaged = damage(world.accel, k);
         if ((accel_validate(world.accel) == WHIT_OK) == damaged)
             fail_msg("case %zu was misjudged", k);
-    }
-}
-
-TEST(scenes_without_anything)
-{
-    for (int k = 0; k < 3; ++k) {
-        struct scene *scene = new_scene();
-        if (k > 0)
-            scene_put_mesh(scene, (struct scene_mesh){0});
-        if (k > 1)
-            scene_put_again(scene, 0, NULL);
-        own_world world = world_of(scene, flatten);
-        struct gpu_ray ray = random_ray();
-        struct oracle_hit sure;
-        oracle_trace(world.accel, &ray, false, &sure);
-        assert_int_equal(trace(world.accel, &ray).primitive, HIT_NONE);
-        assert_int_equal(sure.primitive, HIT_NONE);
     }
 }
 

@@ -158,11 +158,6 @@ static struct gpu_ray grazing_ray(const struct affine *matrix, double away, uint
     return ray;
 }
 
-static bool same_hit(const struct gpu_hit *a, const struct gpu_hit *b)
-{
-    return memcmp(a, b, sizeof *a) == 0;
-}
-
 /* The tree over instances must enter what the rays of its meshes hit. From far away the rounded
    transform of a ray moves it by more than the box of an instance is wide of it. */
 TEST(rays_from_far_away_enter_what_they_hit)
@@ -185,7 +180,7 @@ TEST(rays_from_far_away_enter_what_they_hit)
         params.brute = true;
         struct gpu_hit brute = trace_with(world.accel, params, &ray, NULL);
         met += brute.primitive != HIT_NONE;
-        other += !same_hit(&tree, &brute);
+        other += !hits_equal(&tree, &brute);
     }
     print_message("  %u of %d rays hit, %u of them otherwise by the tree\n", met, RAYS, other);
     assert_true(met > RAYS / 4);

@@ -20,7 +20,7 @@ static struct world sphere_world(void)
 }
 
 /* Instances that are turned, stretched, mirrored and away from the origin, some overlapping. */
-static struct world instances_world(void)
+static struct world instances_in(whit_instances way)
 {
     random_state = 2;
     struct scene *scene = scene_begin(&silent, "test");
@@ -30,7 +30,17 @@ static struct world instances_world(void)
         own_soup soup = i % 2 ? soup_sphere(10, 10) : soup_scattered(50, 0.6f);
         scene_put(scene, mesh_triangles(soup.positions, soup.count), &(struct put){.matrix = &m});
     }
-    return world_of(scene, (whit_accel_params){0});
+    return world_of(scene, (whit_accel_params){.instances = way});
+}
+
+static struct world instances_world(void)
+{
+    return instances_in(WHIT_INSTANCES_ON);
+}
+
+static struct world flat_world(void)
+{
+    return instances_in(WHIT_INSTANCES_OFF);
 }
 
 static struct gpu_ray random_ray(const struct world *world, uint32_t i)
@@ -85,8 +95,8 @@ static void assert_tree_is_brute(const struct world *world, const struct gpu_ray
 
 TEST(tree_gives_what_brute_force_gives)
 {
-    struct world worlds[] = {soup_world(), sphere_world(), instances_world()};
-    for (size_t w = 0; w < 3; ++w) {
+    struct world worlds[] = {soup_world(), sphere_world(), instances_world(), flat_world()};
+    for (size_t w = 0; w < sizeof worlds / sizeof *worlds; ++w) {
         random_state = 3 + w;
         for (uint32_t i = 0; i < 1500; ++i) {
             struct gpu_ray ray = i % 3 ? random_ray(&worlds[w], i) : aimed_ray(&worlds[w], i);
@@ -146,6 +156,8 @@ static const struct {
     {"sphere, aimed", sphere_world, 0, 0, 0, false, true, 5000, 0, 0.1, 1},
     {"instances", instances_world, 0, 0, 0, false, false, 20000, 0.05, 0, 0.005},
     {"instances, aimed", instances_world, 0, 0, 0, false, true, 5000, 0, 0.1, 1},
+    {"one tree", flat_world, 0, 0, 0, false, false, 20000, 0.05, 0, 0.005},
+    {"one tree, aimed", flat_world, 0, 0, 0, false, true, 5000, 0, 0.1, 1},
     {"sizes of 1", NULL, 1.0, 0.3, 100.0, false, false, 40000, 0.25, 0, 0.2},
     {"stretched instances", NULL, 1.0, 0.3, 100.0, true, false, 40000, 0.25, 0, 0.25},
     {"radii from 1e-6", NULL, 1e-5, 1e-6, 100.0, false, false, 40000, 0.25, 0, 0.2},

@@ -95,7 +95,7 @@ static bool crossings_differ(const struct crossing *a, const struct crossing *b,
 }
 
 struct tally {
-    uint64_t rays, entered, missed, false_hits;
+    uint32_t rays, entered, missed, false_hits;
 };
 
 static void compare_box(const struct level *level, const struct gpu_ray *ray, const float lo[3],
@@ -111,10 +111,9 @@ static void compare_box(const struct level *level, const struct gpu_ray *ray, co
 
 static void tell(const struct level *level, const char *name, const struct tally *tally)
 {
-    print_message("%-10s %-34s %llu of %llu entered boxes missed; %llu of %llu entered in vain\n",
-                  level->name, name, (unsigned long long)tally->missed,
-                  (unsigned long long)tally->entered, (unsigned long long)tally->false_hits,
-                  (unsigned long long)(tally->rays - tally->entered));
+    print_message("%-10s %-34s %u of %u entered boxes missed; %u of %u entered in vain\n",
+                  level->name, name, tally->missed, tally->entered, tally->false_hits,
+                  (tally->rays - tally->entered));
 }
 
 struct box_kind {

@@ -133,7 +133,7 @@ static bool has_point(const struct seen *s, const int64_t at[2], bool *owned)
 /* ---- Rays ---- */
 
 struct crossings {
-    uint64_t rays, on_edges, exact, missed, invented, wrong_parity;
+    uint32_t rays, on_edges, exact, missed, invented, wrong_parity;
 };
 
 /* An axis-aligned ray: its place in the projection, and where it starts. */
@@ -226,12 +226,10 @@ static void assert_crossings(struct soup made, int64_t step, bool block)
         for (uint32_t axis = 0; axis < 3; ++axis) {
             struct crossings tally = {0};
             cross_mesh(&levels[l], soup, world.accel, axis, step, block, &tally);
-            print_message("%-10s W3 %s along %c: %llu of %llu crossings missed, %llu invented; "
-                          "wrong parity of %llu of %llu rays, %llu at edges\n",
-                          levels[l].name, soup->name, "xyz"[axis], (unsigned long long)tally.missed,
-                          (unsigned long long)tally.exact, (unsigned long long)tally.invented,
-                          (unsigned long long)tally.wrong_parity, (unsigned long long)tally.rays,
-                          (unsigned long long)tally.on_edges);
+            print_message("%-10s W3 %s along %c: %u of %u crossings missed, %u invented; "
+                          "wrong parity of %u of %u rays, %u at edges\n",
+                          levels[l].name, soup->name, "xyz"[axis], tally.missed, tally.exact,
+                          tally.invented, tally.wrong_parity, tally.rays, tally.on_edges);
             assert_int_equal(tally.missed + tally.invented + tally.wrong_parity, 0);
             assert_true(tally.rays > 1000 && tally.exact > tally.rays / 2);
             assert_true(tally.on_edges > tally.rays / 10);

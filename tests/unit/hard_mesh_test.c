@@ -73,18 +73,16 @@ struct hunt {
 };
 
 struct tally {
-    uint64_t rays, leaks, exact_leaks, contracted_leaks;
-    uint64_t other; /* hits that differ from exact arithmetic */
+    uint32_t rays, leaks, exact_leaks, contracted_leaks;
+    uint32_t other; /* hits that differ from exact arithmetic */
 };
 
 static void tell(const struct level *level, const char *name, const struct tally *tally)
 {
-    print_message(
-        "%-10s %-32s %llu of %llu rays leak (exactly: %llu; if contracted: %llu), %llu hit "
-        "another triangle\n",
-        level->name, name, (unsigned long long)tally->leaks, (unsigned long long)tally->rays,
-        (unsigned long long)tally->exact_leaks, (unsigned long long)tally->contracted_leaks,
-        (unsigned long long)tally->other);
+    print_message("%-10s %-32s %u of %u rays leak (exactly: %u; if contracted: %u), %u hit "
+                  "another triangle\n",
+                  level->name, name, tally->leaks, tally->rays, tally->exact_leaks,
+                  tally->contracted_leaks, tally->other);
 }
 
 static void follow(const struct level *level, const struct accel *accel, struct rational *rational,
@@ -206,7 +204,7 @@ static struct world world_of_hunt(const struct hunt *hunt)
 /* W1, W2, W4, W7, W8. W10: the rays are so hard that a contracted traversal leaks. */
 TEST(no_ray_gets_through)
 {
-    uint64_t contracted_leaks = 0;
+    uint32_t contracted_leaks = 0;
     for (size_t h = 0; h < sizeof hunts / sizeof *hunts; ++h) {
         own_world world = world_of_hunt(&hunts[h]);
         own_rational *rational = rational_create(world.accel);
@@ -237,7 +235,7 @@ static struct gpu_ray ray_in_ring(void)
 }
 
 struct parity {
-    uint64_t rays, crossings, wrong, exact_wrong, other; /* other: lists that differ */
+    uint32_t rays, crossings, wrong, exact_wrong, other; /* other: lists that differ */
 };
 
 /* Compares all hits along the ray with those by fractions. */
@@ -284,11 +282,10 @@ TEST(crossings_are_odd)
             struct gpu_ray ray = ray_in_ring();
             count_crossings(&levels[l], world.accel, rational, &ray, &parity);
         }
-        print_message("%-10s W5 even crossings: %llu of %llu rays, exactly %llu; %llu crossings, "
-                      "%llu rays have others\n",
-                      levels[l].name, (unsigned long long)parity.wrong,
-                      (unsigned long long)parity.rays, (unsigned long long)parity.exact_wrong,
-                      (unsigned long long)parity.crossings, (unsigned long long)parity.other);
+        print_message("%-10s W5 even crossings: %u of %u rays, exactly %u; %u crossings, "
+                      "%u rays have others\n",
+                      levels[l].name, parity.wrong, parity.rays, parity.exact_wrong,
+                      parity.crossings, parity.other);
         assert_true(parity.crossings > rays + rays / 4);
         assert_int_equal(parity.exact_wrong + parity.wrong, 0);
         assert_true(!levels[l].exact || parity.other == 0);

@@ -41,7 +41,7 @@ static struct soup soup_layers(uint32_t layers)
 /* ---- Any tree, any order ---- */
 
 struct counts {
-    uint64_t rays, hits, differ, ends;
+    uint32_t rays, hits, differ, ends;
 };
 
 /* Compares hits at every order; `ends` counts rays for which any-hit and closest-hit disagree. */
@@ -101,12 +101,10 @@ static void try_trees(struct world world)
     for (int l = 0; l < LEVELS; ++l) {
         struct counts counts = {0};
         compare_trees(&levels[l], &world, accels, rays, &counts);
-        print_message("%-10s R1 %-11s %llu of %llu hits differ by tree or order; R8 %llu any "
-                      "hits are unlike closest ones; %llu of %llu rays hit\n",
-                      levels[l].name, world.scene->name, (unsigned long long)counts.differ,
-                      (unsigned long long)counts.rays * TREES * ORDERS,
-                      (unsigned long long)counts.ends, (unsigned long long)counts.hits,
-                      (unsigned long long)counts.rays);
+        print_message("%-10s R1 %-11s %u of %u hits differ by tree or order; R8 %u any "
+                      "hits are unlike closest ones; %u of %u rays hit\n",
+                      levels[l].name, world.scene->name, counts.differ,
+                      counts.rays * TREES * ORDERS, counts.ends, counts.hits, counts.rays);
         if (counts.differ + counts.ends > 0 || (empty ? counts.hits > 0 : counts.hits <= rays / 8))
             fail_msg("%s", world.scene->name);
     }
@@ -273,7 +271,7 @@ static uint32_t count_usable(const struct scene_mesh *mesh)
     return usable;
 }
 
-static struct scene *scene_of_bits(uint32_t meshes, uint64_t *usable)
+static struct scene *scene_of_bits(uint32_t meshes, uint32_t *usable)
 {
     struct scene *scene = scene_begin(&silent, "bits");
     for (uint32_t i = 0; i < meshes; ++i) {
@@ -294,12 +292,12 @@ static struct scene *scene_of_bits(uint32_t meshes, uint64_t *usable)
 TEST(any_bits_have_trees)
 {
     const uint32_t scenes = cases_times() > 1 ? 1000 : 40;
-    uint64_t rays = 0, hits = 0, differ = 0, kept = 0, usable = 0;
+    uint32_t rays = 0, hits = 0, differ = 0, kept = 0, usable = 0;
     random_state = 7;
     for (uint32_t s = 0; s < scenes; ++s) {
         own_world world = world_of(scene_of_bits(20, &usable), trees[s % TREES]);
         const struct scene *scene = world.scene;
-        kept += scene->triangle_total;
+        kept += (uint32_t)scene->triangle_total;
         for (uint32_t m = 0; m < scene->mesh_count; ++m)
             assert_int_equal(count_usable(&scene->meshes[m]), scene->meshes[m].triangle_count);
         for (uint32_t i = 0; i < 40; ++i) {
@@ -313,10 +311,9 @@ TEST(any_bits_have_trees)
         }
     }
     print_message(
-        "U7 %u scenes of any bits, %llu of %llu triangles kept: %llu of %llu rays differ by tree, "
-        "%llu hit\n",
-        scenes, (unsigned long long)kept, (unsigned long long)usable, (unsigned long long)differ,
-        (unsigned long long)rays, (unsigned long long)hits);
+        "U7 %u scenes of any bits, %u of %u triangles kept: %u of %u rays differ by tree, "
+        "%u hit\n",
+        scenes, kept, usable, differ, rays, hits);
     assert_true(kept <= usable && usable - kept < usable / 1000); /* some have no area */
     assert_true(kept > scenes * 20 && hits > rays / 100);
     assert_int_equal(differ, 0);
