@@ -17,7 +17,7 @@ struct accel_mesh {
     uint32_t triangle_count;               /* below record_count where triangles were split */
     uint32_t shade_base; /* place of primitive 0 in arrays with one element per primitive */
     uint32_t depth;
-    double sah_cost, build_ms;
+    double sah_cost;
     struct bvh_box box;
 };
 

@@ -67,7 +67,6 @@ static inline struct accel_mesh accel_mesh_over(const struct bvh *tree)
         .triangle_count = tree->primitive_count,
         .depth = tree->depth,
         .sah_cost = tree->sah_cost,
-        .build_ms = tree->build_ms,
         .box = tree->node_count > 0 ? bvh_node_box(&tree->nodes[0]) : (struct bvh_box){{0}, {0}},
     };
 }

@@ -2,7 +2,6 @@
 #include <float.h>
 #include <stdlib.h>
 
-#include "base/clock.h"
 #include "base/threads.h"
 #include "bvh/build.h"
 #include "bvh/complete.h"
@@ -52,7 +51,6 @@ whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t
                       const struct bvh_triangles *triangles, const whit_accel_params *params,
                       struct bvh *out)
 {
-    double begin_ms = clock_ms();
     *out = (struct bvh){.primitive_count = count, .reference_count = count};
     whit_accel_params resolved;
     params_resolve(params, &resolved);
@@ -69,7 +67,6 @@ whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t
         bvh_complete(out, resolved.threads);
     if (result == WHIT_OK && resolved.optimize)
         result = bvh_optimize(log, resolved.threads, out);
-    out->build_ms = clock_ms() - begin_ms;
     if (result != WHIT_OK)
         bvh_finish(out);
     return result;

@@ -26,14 +26,12 @@ struct bvh {
     struct gpu_bvh_node *nodes; /* 64-byte aligned; free() */
     uint32_t *order;            /* free() */
     uint32_t node_count;        /* includes nodes[1]; 0: no primitives */
-    uint32_t primitive_count, leaf_count;
+    uint32_t primitive_count;
     uint32_t
         reference_count; /* length of `order`; beyond primitive_count where triangles were split */
     uint32_t depth;      /* inner nodes on the longest path: the stack a traversal needs */
-    uint32_t leaf_largest;
-    bool clipped;    /* leaf boxes may hold parts of their triangles only */
-    double sah_cost; /* expected cost of a random ray, relative to the root's area */
-    double build_ms;
+    bool clipped;        /* leaf boxes may hold parts of their triangles only */
+    double sah_cost;     /* expected cost of a random ray, relative to the root's area */
 };
 
 /* WHIT_ERROR_USAGE, logged, for params of which no builder makes a tree; those of one builder are

@@ -22,20 +22,15 @@ void bvh_set_axis(struct gpu_bvh_node *first)
 
 struct tally {
     double area_inner, area_leaves; /* half areas; of leaves: times primitives */
-    uint32_t leaf_count, leaf_largest;
 };
 
 static void node_tally(const struct gpu_bvh_node *node, struct tally *tally)
 {
     uint32_t count = bvh_count(node);
-    if (count == 0) {
+    if (count == 0)
         tally->area_inner += bvh_half_area(node);
-        return;
-    }
-    tally->area_leaves += bvh_half_area(node) * count;
-    ++tally->leaf_count;
-    if (count > tally->leaf_largest)
-        tally->leaf_largest = count;
+    else
+        tally->area_leaves += bvh_half_area(node) * count;
 }
 
 /* The depth of the subtree below `node`, 0 for a leaf. Recurses at most BVH_DEPTH_MAX deep. */
@@ -85,12 +80,8 @@ static struct tally nodes_complete(struct bvh *bvh, uint32_t thread_count)
     uint32_t count = (bvh->node_count + chunks.nodes - 1) / chunks.nodes;
     threads_for(thread_count, count, chunk_complete, &chunks);
     for (uint32_t i = 0; i < count; ++i) {
-        const struct tally *part = &chunks.tallies[i];
-        sum.area_inner += part->area_inner;
-        sum.area_leaves += part->area_leaves;
-        sum.leaf_count += part->leaf_count;
-        sum.leaf_largest =
-            part->leaf_largest > sum.leaf_largest ? part->leaf_largest : sum.leaf_largest;
+        sum.area_inner += chunks.tallies[i].area_inner;
+        sum.area_leaves += chunks.tallies[i].area_leaves;
     }
     return sum;
 }
@@ -100,7 +91,5 @@ void bvh_complete(struct bvh *bvh, uint32_t thread_count)
     struct tally tally = nodes_complete(bvh, thread_count);
     double root = bvh->node_count > 0 ? bvh_half_area(&bvh->nodes[0]) : 0.0;
     bvh->sah_cost = root > 0.0 ? (tally.area_inner + tally.area_leaves) / root : 0.0;
-    bvh->leaf_count = tally.leaf_count;
-    bvh->leaf_largest = tally.leaf_largest;
     bvh->depth = bvh->node_count > 0 ? subtree_depth(bvh->nodes, 0) : 0;
 }

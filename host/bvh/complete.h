@@ -4,8 +4,8 @@
 
 #include "bvh/bvh.h"
 
-/* Sets the axis bits of every pair of nodes, and sah_cost, leaf_count, leaf_largest and depth of
-   the tree. Every builder ends with it. The same bits for any number of threads. */
+/* Sets the axis bits of every pair of nodes, and sah_cost and depth of the tree. Every builder ends
+   with it. The same bits for any number of threads. */
 void bvh_complete(struct bvh *bvh, uint32_t thread_count);
 /* Sets only the axis bits of the pair of sibling nodes at `first`. */
 void bvh_set_axis(struct gpu_bvh_node *first);

@@ -94,12 +94,12 @@ static inline void box_unite(struct bvh_box *a, const float lo[3], const float h
 /* ---- What bvh_validate does not check ---- */
 
 struct found {
-    uint32_t depth, leaves;
+    uint32_t depth;
     double cost; /* not yet divided by the root's area */
     bool exact;  /* every box is the union of the boxes below it */
 };
 
-/* Walks the tree and fills `found`: checks boxes, counts depth, leaves and cost. */
+/* Walks the tree and fills `found`: checks boxes, counts depth and cost. */
 static inline void walk_exact(const struct bvh *bvh, const struct bvh_box *boxes, uint32_t index,
                               uint32_t depth, struct found *found)
 {
@@ -113,7 +113,6 @@ static inline void walk_exact(const struct bvh *bvh, const struct bvh_box *boxes
         }
         found->depth = depth > found->depth ? depth : found->depth;
         found->cost += area * bvh_count(node);
-        ++found->leaves;
     } else {
         const struct gpu_bvh_node *pair = &bvh->nodes[node->first];
         box_unite(&sum, pair[0].lo, pair[0].hi);
@@ -133,8 +132,7 @@ static inline bool is_whole(const struct bvh *bvh, const struct bvh_box *boxes)
     double root = half_area(bvh->nodes[0].lo, bvh->nodes[0].hi);
     bool cost_right =
         root <= 0.0 || fabs(found.cost / root - bvh->sah_cost) <= 1e-9 * bvh->sah_cost;
-    return found.exact && found.depth == bvh->depth && found.leaves == bvh->leaf_count &&
-           cost_right;
+    return found.exact && found.depth == bvh->depth && cost_right;
 }
 
 /* Points of a triangle in sixths: corners, middles of edges, and inside. All of them in doubles,
@@ -199,14 +197,14 @@ static inline const char *find_fault(const struct soup *soup, const whit_accel_p
     double share = params->spatial_budget == 0.0f ? 0.5 : fmax((double)params->spatial_budget, 0.0);
     if (bvh_validate(&silent, bvh, soup->boxes, limit) != WHIT_OK)
         return messages.last_error;
-    if (bvh->primitive_count != soup->count || bvh->leaf_largest > limit ||
-        bvh->depth >= BVH_DEPTH_MAX || !isfinite(bvh->sah_cost))
+    if (bvh->primitive_count != soup->count || bvh->depth >= BVH_DEPTH_MAX ||
+        !isfinite(bvh->sah_cost))
         return "counts or costs out of range";
     if (bvh->reference_count < soup->count || bvh->clipped != (parts > 0) ||
         parts > (params->build == WHIT_BUILD_SPATIAL ? share * soup->count : 0.0))
         return "more parts than allowed";
     if (parts == 0 && soup->count > 0 && !is_whole(bvh, soup->boxes))
-        return "boxes, depth, leaves or costs are not those of what is below";
+        return "boxes, depth or costs are not those of what is below";
     if (params->build == WHIT_BUILD_SPATIAL && !is_covered(soup, bvh))
         return "a part of a triangle is lost, or one is in a leaf twice";
     return NULL;
@@ -259,7 +257,7 @@ static inline const char *find_optimizing_fault(const struct soup *soup, whit_ac
     own_bvh plain = soup_build(soup, params);
     if (better->sah_cost > plain.sah_cost)
         fault = "optimizing made it worse";
-    else if (better->leaf_count != plain.leaf_count ||
+    else if (better->node_count != plain.node_count ||
              leaves_digest(better) != leaves_digest(&plain))
         fault = "optimizing changed the leaves";
     else if (better->sah_cost < plain.sah_cost && !is_depth_first(better))

@@ -134,9 +134,6 @@ static const struct {
     {"half a pair", TREE, offsetof(struct bvh, node_count), 0, 0, 1, "aligned pairs"},
     {"no nodes", TREE, offsetof(struct bvh, node_count), ~0u, 0, 0, "no nodes for primitives"},
     {"depth", TREE, offsetof(struct bvh, depth), 0, 0, 1, "stated depth"},
-    {"number of leaves", TREE, offsetof(struct bvh, leaf_count), 0, 0, ~0u,
-     "stated number of leaves"},
-    {"largest leaf", TREE, offsetof(struct bvh, leaf_largest), 0, 0, 1, "stated largest leaf"},
 };
 
 static void change_word(struct bvh *bvh, size_t row)
