@@ -30,8 +30,6 @@ struct creation {
     struct material_bits *materials;
     struct span *spans;
     uint32_t span_count, span_capacity;
-    uint32_t *small; /* meshes below MESH_LARGE */
-    uint32_t small_count;
     whit_result *results; /* one for each mesh */
 };
 
@@ -81,32 +79,31 @@ done:
     return result;
 }
 
-static void build_small(void *context, uint32_t index)
+static bool is_large(const struct creation *creation, uint32_t mesh)
+{
+    return scene_mesh_primitives(&creation->accel->scene->meshes[mesh]) >= MESH_LARGE;
+}
+
+static void build_small(void *context, uint32_t mesh)
 {
     struct creation *creation = context;
-    uint32_t mesh = creation->small[index];
-    creation->results[mesh] = mesh_build(creation, mesh, 1);
+    if (!is_large(creation, mesh))
+        creation->results[mesh] = mesh_build(creation, mesh, 1);
 }
 
 /* Builds large meshes one after the other, each by all threads, and small ones side by side. */
 static whit_result meshes_build(struct creation *creation)
 {
-    struct accel *accel = creation->accel;
-    uint32_t threads = accel->params.threads;
-    for (uint32_t i = 0; i < accel->mesh_count; ++i) {
-        if (scene_mesh_primitives(&accel->scene->meshes[i]) < MESH_LARGE)
-            creation->small[creation->small_count++] = i;
-        else
-            creation->results[i] = mesh_build(creation, i, threads);
-        if (creation->results[i] != WHIT_OK)
-            return creation->results[i];
-    }
-    threads_for(threads, creation->small_count, build_small, creation);
-    for (uint32_t i = 0; i < accel->mesh_count; ++i) {
-        if (creation->results[i] != WHIT_OK)
-            return creation->results[i];
-    }
-    return WHIT_OK;
+    uint32_t threads = creation->accel->params.threads, count = creation->accel->mesh_count;
+    whit_result result = WHIT_OK;
+    for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
+        if (is_large(creation, i))
+            result = mesh_build(creation, i, threads);
+    if (result == WHIT_OK)
+        threads_for(threads, count, build_small, creation);
+    for (uint32_t i = 0; result == WHIT_OK && i < count; ++i)
+        result = creation->results[i];
+    return result;
 }
 
 /* ---- One array for all ---- */
@@ -212,11 +209,10 @@ static whit_result creation_alloc(struct creation *creation)
     accel->meshes = array_alloc_zeroed(scene->mesh_count, sizeof *accel->meshes);
     accel->instances = array_alloc_aligned(scene->instance_count, sizeof *accel->instances);
     creation->trees = array_alloc_zeroed(scene->mesh_count, sizeof *creation->trees);
-    creation->small = array_alloc(scene->mesh_count, sizeof *creation->small);
     creation->results = array_alloc_zeroed(scene->mesh_count, sizeof *creation->results);
     creation->materials = array_alloc_zeroed(scene->material_count, sizeof *creation->materials);
-    bool all = accel->meshes && accel->instances && creation->trees && creation->small &&
-               creation->results && creation->materials;
+    bool all = accel->meshes && accel->instances && creation->trees && creation->results &&
+               creation->materials;
     return all ? WHIT_OK : WHIT_ERROR_MEMORY;
 }
 
@@ -240,7 +236,6 @@ static void creation_finish(struct creation *creation)
     for (uint32_t i = 0; creation->trees && i < creation->accel->mesh_count; ++i)
         bvh_finish(&creation->trees[i]);
     free(creation->trees);
-    free(creation->small);
     free(creation->results);
     free(creation->materials);
     free(creation->spans);
