@@ -24,7 +24,8 @@ WHIT_CHECK whit_result accel_flat_build(struct accel *accel, const struct scene_
 void accel_flat_destroy(struct accel_flat *flat);
 /* The meshes of the scene; only triangle_count and shade_base are set. */
 const struct accel_mesh *accel_flat_meshes(const struct accel_flat *flat);
-/* Index of an instance's primitive 0 among the primitives of all instances. */
+/* Index of an instance's primitive 0 among the primitives of all instances, whose number is that of
+   the instance behind the last one. */
 uint32_t accel_flat_first(const struct accel_flat *flat, uint32_t instance);
 
 #endif

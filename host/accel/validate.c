@@ -543,22 +543,14 @@ static bool flat_instances_match(const struct view *view, const struct accel *ac
     return true;
 }
 
-static bool flat_records_match(const struct view *view, const struct mesh_user *user)
-{
-    for (uint32_t i = 0; i < view->slot_count; ++i) {
-        if (flat_primitive(user, i) == UINT32_MAX)
-            REFUSE(view, "a record names no triangle", i);
-    }
-    return records_match(view, user);
-}
-
 static whit_result validate_flat(const struct accel *accel)
 {
     const struct accel_mesh *m = &accel->meshes[0];
     const struct mesh_user user = {accel, NULL};
     const struct view view = view_over(m, &user);
     if (m->first_node != 0 || m->first_triangle != 0 || m->node_count > accel->node_count ||
-        m->record_count != accel->record_count || m->triangle_count > m->record_count) {
+        m->record_count != accel->record_count || m->triangle_count > m->record_count ||
+        m->triangle_count != accel_flat_first(accel->world, accel->instance_count)) {
         refuse(&view, "its nodes or records are out of range; records", m->record_count);
         return WHIT_ERROR_FAILED;
     }
@@ -566,7 +558,7 @@ static whit_result validate_flat(const struct accel *accel)
         return WHIT_ERROR_FAILED;
     whit_result result = tree_check(&view, m->depth, m->root);
     if (result == WHIT_OK && !(stated(&view, "depth of all meshes", accel->mesh_depth, m->depth) &&
-                               flat_records_match(&view, &user)))
+                               records_match(&view, &user)))
         result = WHIT_ERROR_FAILED;
     return result == WHIT_OK ? parts_check(&view, accel) : result;
 }

@@ -92,14 +92,14 @@ static struct gpu_ray random_line(const struct bvh_box *box, uint64_t *random)
 struct measuring {
     const struct accel *accel;
     const double *area_ends; /* running sum of the areas of the meshes' boxes */
-    uint32_t mesh_count, ray_count;
+    uint32_t ray_count;
     struct gpu_cost *costs; /* one for each task */
     uint32_t *statuses;
 };
 
 static uint32_t mesh_at(const struct measuring *measuring, double area)
 {
-    uint32_t first = 0, last = measuring->mesh_count - 1;
+    uint32_t first = 0, last = measuring->accel->mesh_count - 1;
     while (first < last) {
         uint32_t middle = first + (last - first) / 2;
         if (area < measuring->area_ends[middle])
@@ -114,7 +114,7 @@ static uint32_t mesh_at(const struct measuring *measuring, double area)
 static void measure_line(const struct measuring *measuring, uint32_t index, struct gpu_cost *cost,
                          uint32_t *status)
 {
-    double total = measuring->area_ends[measuring->mesh_count - 1];
+    double total = measuring->area_ends[measuring->accel->mesh_count - 1];
     uint32_t mesh_index = mesh_at(measuring, ((double)index + 0.5) / measuring->ray_count * total);
     struct accel_mesh *mesh = &measuring->accel->meshes[mesh_index];
     struct gpu_instance instance = {0};
@@ -163,14 +163,13 @@ static whit_result add_measured(const struct measuring *measuring, uint32_t task
     return WHIT_OK;
 }
 
-static whit_result measure(const struct accel *accel, const double *area_ends, uint32_t mesh_count,
-                           uint32_t ray_count, whit_accel_report *report)
+static whit_result measure(const struct accel *accel, const double *area_ends, uint32_t ray_count,
+                           whit_accel_report *report)
 {
     uint32_t task_count = ray_count / RAYS_A_TASK + (ray_count % RAYS_A_TASK != 0);
     struct measuring measuring = {
         .accel = accel,
         .area_ends = area_ends,
-        .mesh_count = mesh_count,
         .ray_count = ray_count,
         .costs = array_alloc_zeroed(task_count, sizeof *measuring.costs),
         .statuses = array_alloc_zeroed(task_count, sizeof *measuring.statuses),
@@ -216,16 +215,15 @@ static whit_result add_mesh(const struct accel *accel, uint32_t index, struct to
 
 whit_result accel_report(const struct accel *accel, uint32_t ray_count, whit_accel_report *report)
 {
-    uint32_t mesh_count = accel->flat ? 1 : accel->mesh_count;
     struct totals totals = {0};
     *report = (whit_accel_report){0};
-    double *area_ends = array_alloc(mesh_count, sizeof *area_ends);
+    double *area_ends = array_alloc(accel->mesh_count, sizeof *area_ends);
     if (!area_ends) {
         log_error(&accel->log, "%s: out of memory for a report on its trees", accel->scene->name);
         return WHIT_ERROR_MEMORY;
     }
     whit_result result = WHIT_OK;
-    for (uint32_t i = 0; result == WHIT_OK && i < mesh_count; ++i) {
+    for (uint32_t i = 0; result == WHIT_OK && i < accel->mesh_count; ++i) {
         result = add_mesh(accel, i, &totals, report);
         area_ends[i] = totals.area;
     }
@@ -236,7 +234,7 @@ whit_result accel_report(const struct accel *accel, uint32_t ray_count, whit_acc
         report->overlap = totals.inner > 0.0 ? totals.shared / totals.inner : 0.0;
         report->epo = totals.epo_surface > 0.0 ? totals.epo_overlap / totals.epo_surface : 0.0;
         if (ray_count > 0)
-            result = measure(accel, area_ends, mesh_count, ray_count, report);
+            result = measure(accel, area_ends, ray_count, report);
     }
     free(area_ends);
     return result;
