@@ -42,6 +42,21 @@ struct model_file {
     struct ply_paint paint; /* of a PLY; of an OBJ: no texture, and colours as assimp has them */
 };
 
+static void note_counts(struct scene *scene, const char *path, const struct import_counts *counts)
+{
+    const char *name = path_name(path);
+    if (counts->points)
+        scene_note(scene, SCENE_NOTE_INFO, "%s: %llu points are not drawn", name,
+                   (unsigned long long)counts->points);
+    if (counts->lines)
+        scene_note(scene, SCENE_NOTE_INFO, "%s: %llu lines are not drawn", name,
+                   (unsigned long long)counts->lines);
+    if (counts->bad_faces)
+        scene_note(scene, SCENE_NOTE_WARNING,
+                   "%s: %llu faces without area or with bad indices were dropped", name,
+                   (unsigned long long)counts->bad_faces);
+}
+
 static whit_result import(struct scene *scene, const struct model_request *request,
                           const struct model_file *of, struct import_block *block)
 {
@@ -53,7 +68,7 @@ static whit_result import(struct scene *scene, const struct model_request *reque
     if (result != WHIT_OK)
         return result;
     const struct import_counts *counts = &block->counts;
-    model_note_counts(scene, request->path, counts);
+    note_counts(scene, request->path, counts);
     bool whole = of->kind >= IMPORT_FBX;
     if (whole ? block->glb != NULL : block->part_count > 0)
         return WHIT_OK;

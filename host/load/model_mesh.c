@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "base/file.h"
 #include "base/text.h"
 #include "image/image.h"
 #include "load/model_mesh.h"
@@ -122,19 +121,4 @@ whit_result model_add_mesh(struct scene *scene, const char *name, const struct p
     }
     *index = scene_add_mesh(scene, mesh);
     return *index == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
-}
-
-void model_note_counts(struct scene *scene, const char *path, const struct import_counts *counts)
-{
-    const char *name = path_name(path);
-    if (counts->points)
-        scene_note(scene, SCENE_NOTE_INFO, "%s: %llu points are not drawn", name,
-                   (unsigned long long)counts->points);
-    if (counts->lines)
-        scene_note(scene, SCENE_NOTE_INFO, "%s: %llu lines are not drawn", name,
-                   (unsigned long long)counts->lines);
-    if (counts->bad_faces)
-        scene_note(scene, SCENE_NOTE_WARNING,
-                   "%s: %llu faces without area or with bad indices were dropped", name,
-                   (unsigned long long)counts->bad_faces);
 }

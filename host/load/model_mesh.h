@@ -13,7 +13,4 @@ WHIT_CHECK whit_result model_add_mesh(struct scene *scene, const char *name,
                                       const struct part *parts, const uint32_t *materials,
                                       uint32_t part_count, bool colors_are_srgb, uint32_t *index);
 
-/* Notes what the importer left out. */
-void model_note_counts(struct scene *scene, const char *path, const struct import_counts *counts);
-
 #endif

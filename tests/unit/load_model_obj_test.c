@@ -271,22 +271,17 @@ TEST_IN(curves_and_surfaces_are_noted, fixture_begin, fixture_end)
     assert_true(fixture_noted("a.obj: 2 curves and surfaces are not drawn"));
 }
 
-TEST_IN(nothing_to_draw_is_refused, fixture_begin, fixture_end)
+TEST_IN(damaged_texts_are_refused, fixture_begin, fixture_end)
 {
-    fixture_refused(put_text("a.obj", QUAD "l 1 2\nl 3 4\n"),
-                    "no triangles in it (0 points, 2 lines");
-}
-
-TEST_IN(index_out_of_range_is_refused, fixture_begin, fixture_end)
-{
-    fixture_refused(put_text("a.obj", QUAD "f 1 2 9\n"),
-                    "a.obj:5: a face names vertex 9, and there are 4");
-    fixture_refused(put_text("a.obj", QUAD "f 1 2 x\n"),
-                    "a.obj:5: a face names `x`, which is no number");
-    fixture_refused(put_text("a.obj", QUAD "v 0 0 0 1 1 1 1\nf 1 2 3\n"),
-                    "a.obj:5: a vertex has 7 numbers");
-    fixture_refused(put_text("a.obj", QUAD "f 1 2 3\nf 1 \\\n2 -5\n"),
-                    "a.obj:6: a face names vertex -5, and there are 4");
+    static const char *const rows[][2] = {
+        {QUAD "l 1 2\nl 3 4\n", "no triangles in it (0 points, 2 lines"},
+        {QUAD "f 1 2 9\n", "a.obj:5: a face names vertex 9, and there are 4"},
+        {QUAD "f 1 2 x\n", "a.obj:5: a face names `x`, which is no number"},
+        {QUAD "v 0 0 0 1 1 1 1\nf 1 2 3\n", "a.obj:5: a vertex has 7 numbers"},
+        {QUAD "f 1 2 3\nf 1 \\\n2 -5\n", "a.obj:6: a face names vertex -5, and there are 4"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        fixture_refused(put_text("a.obj", rows[i][0]), rows[i][1]);
 }
 
 TEST_IN(texture_coordinates_that_are_not_there_are_told, fixture_begin, fixture_end)
