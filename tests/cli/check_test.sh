@@ -183,10 +183,6 @@ sed -n 's/^ *REFUSED("\([^"]*\)".*/--\1/p' "$SCENES/../host/app/check/case_optio
 check "each option that no case may have is in docs/check.md" test "$(wc -l <refused)" -gt 20 -a \
     "$(while read -r option; do grep -qF -- "\`$option\`" "$SCENES/../docs/check.md" || echo "$option"; done <refused)" = ""
 refuse 2 "no folder" "root nowhere: there is no such folder" check looks.whit --root nowhere
-printf 'a cube.json --cameras x\n' >cameras.whit
-refuse 2 "several pictures" "cameras.whit:1: .*--cameras.*makes several pictures" check cameras.whit
-printf 'a cube.json --size 16x12\na expect pixel(-1,0) == 0\n' >pixel.whit
-refuse 2 "no such pixel" "pixel.whit:2: .*two whole numbers from 0 on" check pixel.whit
 refuse 2 "no suite" "a suite is missing" check
 refuse 2 "no such suite" "nowhere.whit: there is no such file" check nowhere.whit
 refuse 2 "no such case" "looks.whit has no such case" check looks.whit --accept cube nothing

@@ -1,5 +1,5 @@
 # Tests of `whit cost` source this file after common.sh.
-WRONG=$3
+WRONG=${3:-}
 XDG_CACHE_HOME=$OUT/cache
 export XDG_CACHE_HOME
 mkdir "$OUT/cache" "$OUT/files"

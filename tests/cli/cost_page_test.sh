@@ -4,9 +4,7 @@
 . "$(dirname "$0")/common.sh"
 needs jq
 . "$(dirname "$0")/browser.sh"
-XDG_CACHE_HOME=$OUT/cache
-export XDG_CACHE_HOME
-mkdir "$OUT/cache"
+. "$(dirname "$0")/cost_common.sh"
 
 page=$OUT/cost.html
 expect 0 "a page" cost "$CUBE" --size 48x36 --quick --rays 0 --spend 1 --reference-samples 4 --knobs aa,shadows \

@@ -2,9 +2,7 @@
 # Promises of `whit cost` and `whit render`, on second runs: 9 of 10 pictures take at most the time T, in two scenes
 # with three T each; the error is below E. This test is long.
 . "$(dirname "$0")/common.sh"
-XDG_CACHE_HOME=$OUT/cache
-export XDG_CACHE_HOME
-mkdir "$OUT/cache"
+. "$(dirname "$0")/cost_common.sh"
 
 # draw SCENE T: draws one picture, and notes it in $OUT/kept if it took at most T ms.
 draw() {
