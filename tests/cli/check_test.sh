@@ -195,6 +195,8 @@ refuse 2 "a report over a shader" "bare/room.glsl: a shader of the suite and --j
 refuse 2 "a report that --list does not write" "list compares nothing" check looks.whit --list --report x.html
 refuse 2 "a report that --prune does not write" "prune alone draws nothing, and --junit is" check looks.whit --prune --junit x.xml
 refuse 2 "cases for --prune alone" "prune alone draws nothing, and --only is" check looks.whit --prune --only cube
+refuse 2 "a revision for reports" "accept-from draws nothing, and --base is" check looks.whit --accept-from ci --base HEAD
+refuse 2 "faults of no kind" "seed is of the faults of" check looks.whit --seed 3
 refuse 2 "a blank reason" "reason: 1 to 120 bytes, not all blank" check looks.whit --accept all --reason "  "
 refuse 2 "a reason alone" "accept is missing" check looks.whit --reason x
 refuse 2 "two suites" "one argument too many" check looks.whit looks.whit

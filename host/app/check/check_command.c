@@ -80,7 +80,7 @@ static const struct setting options[] = {
      "put N faults into the suite's scenes, one after the other, and\n"
      "print how many were caught and their cause found",
      SETTING_AT_COUNT(struct check, mutate), .min = 1, .max = 100000},
-    {"seed", 0, "N", "of --mutate: another N draws other faults (0)",
+    {"seed", 0, "N", "of --power and --mutate: another N draws other faults (0)",
      SETTING_AT_COUNT(struct check, seed), .max = UINT32_MAX},
     {"root", 0, "FOLDER", "what the suite's files lie below and are named from",
      "the suite's own folder", SETTING_AT_NAME(struct check, root)},
@@ -164,6 +164,10 @@ static bool check_alone(struct cli_reader *reader, const struct check *check)
                           mode);
     if (check->power + (check->mutate > 0) + check->list > 1)
         return cli_misuse(reader, "--list, --power and --mutate: one of them");
+    if (check->seed && !check->power && !check->mutate)
+        return cli_misuse(reader, "--seed is of the faults of --power and --mutate");
+    if (check->accept_from && check->base)
+        return cli_misuse(reader, "--accept-from draws nothing, and --base is for what is drawn");
     const char *other = check->base ? "base" : check->only.count ? "only" : report;
     return !check->prune || check->accept.count || !other ||
            cli_misuse(reader, "--prune alone draws nothing, and --%s is for what is drawn", other);
