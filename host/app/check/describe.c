@@ -92,7 +92,7 @@ whit_result drawing_probe(const struct drawing *drawing, uint32_t x, uint32_t y,
                              : whit_probe(drawing->renderer, x, y, 1, &report);
     *ray =
         (whit_probe_ray){.device = {(double)INFINITY, WHIT_NONE, WHIT_NONE}, .material = WHIT_NONE};
-    if (count)
+    if (rays && count) /* there are none where memory ran out */
         *ray = rays[0];
     else if (report && report->ray_count)
         *ray = report->rays[0];
