@@ -295,14 +295,9 @@ static void draw_effect(struct view *view, uint32_t index)
     }
     ui_table_next();
     draw_price_of(view, index, in, can);
-    if (!say_reasons())
-        return;
-    if (info.called) {
-        ui_cell(UI_COLOR_TEXT, info.reason);
-    } else {
-        ui_table_next();
-        ui_text_dim("not called for");
-    }
+    if (say_reasons())
+        ui_cell(info.called ? UI_COLOR_TEXT : UI_COLOR_DIM,
+                info.called ? info.reason : "not called for");
 }
 
 static void draw_effects(struct view *view)
@@ -346,7 +341,7 @@ void panels_step(struct view *view)
     if (change->number == panels->change)
         return;
     panels->change = change->number;
-    bool alone = strncmp(change->what, "effects ", 8) == 0;
+    bool alone = strncmp(change->what, "effects ", 8) == 0 && !strstr(change->what, ", ");
     if (panels->pending > 0 && alone) {
         uint32_t index = (uint32_t)panels->pending - 1;
         panels->prices[index] =

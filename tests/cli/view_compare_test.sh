@@ -85,6 +85,8 @@ start: press F2 x2
 off: press X, choose shadows | words = --size 320x240 --effects -shadows | change.what = effects auto -> -shadows
     | prices.shadows is change.other_colors of off | prices.highlights = (no prices.highlights)
 on: choose shadows | words = --size 320x240 | frame.pixels as start
+both: choose highlights, press T | change.what = effects auto -> -highlights, traversal distance -> sign
+    | prices.highlights = (no prices.highlights)
 END
 fi
 
