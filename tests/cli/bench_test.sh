@@ -52,7 +52,10 @@ refuse 2 "no triangles" "balls.json: has no triangles" bench build "$SCENES/ball
 check "no scratch files stay" is_empty "$OUT/tmp"
 
 V=$OUT/files/views.json
-expect 0 "views, quick, of a file" bench views "$CUBE" --quick --runs 1 --json "$V"
+NAMED=$OUT/$(printf 'c\033\377.json')
+cp "$CUBE" "$NAMED"
+expect 0 "views, quick, of a file" bench views "$NAMED" --quick --runs 1 --json "$V"
+check "its name is shown" grep -qF '| c\u001b\xff.json ' "$OUT/stdout"
 check "tiles of a picture and views around, beside it" jq -e '.tables[0].rows | [.[].cameras] == ["tiles", "around"] and
     all(.views_ms.median > 0 and .one_ms.median > 0) and .[0].views == 36 and .[1].views == 9 and .[1].apart_ms.median > 0' "$V"
 check "the rays of tiles are those of the picture" jq -e '.tables[0].rows[0].rays_a_pixel | .[0] / .[1] | . > 0.98 and . < 1.02' "$V"

@@ -69,7 +69,7 @@ static void put_ratio(struct table *table, const struct frame *frame, const char
     document_put(row, "reference_ms", table_times(&ms[FRAME_REFERENCE]));
     table_row(table);
     table_cell(table, "%s%s", frame->name, what);
-    table_cell(table, "%.40s", cli_shown(beside));
+    table_cell(table, "%.40s", beside);
     table_ms(table, &ms[side]);
     table_ms(table, &ms[other]);
     table_ms(table, side == FRAME_WHIT ? &ms[FRAME_REFERENCE] : &none);

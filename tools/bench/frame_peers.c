@@ -40,7 +40,7 @@ static void find_pov(struct peers *peers, struct table *table)
         table_leave_out(table, pictures, "povray is not installed (Debian: povray)");
     } else {
         peers->has_pov = true;
-        table_say(table, "Beside %s.", cli_shown(line));
+        table_say(table, "Beside %s.", line);
     }
 }
 

@@ -57,12 +57,14 @@ void table_row(struct table *table)
 
 void table_cell(struct table *table, const char *format, ...)
 {
+    char text[TABLE_CELL];
     if (table->cell >= table->column_count || table->is_short)
         return;
     va_list args;
     va_start(args, format);
-    vsnprintf(table->lines[table->line_count - 1].cells[table->cell++], TABLE_CELL, format, args);
+    vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    whit_text_show(text, table->lines[table->line_count - 1].cells[table->cell++], TABLE_CELL);
 }
 
 void table_ms(struct table *table, const struct sample_runs *times)
@@ -143,12 +145,12 @@ void table_goal(struct table *table, const char *key, const char *name, double v
 
 void table_say(struct table *table, const char *format, ...)
 {
-    char text[400];
+    char text[400], shown[sizeof text];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    document_append(table->sentences, json_string(text));
+    document_append(table->sentences, json_string(whit_text_show(text, shown, sizeof shown)));
 }
 
 void table_leave_out(struct table *table, const char *name, const char *why)
@@ -156,7 +158,7 @@ void table_leave_out(struct table *table, const char *name, const char *why)
     json_t *object = document_entry(table->left_out);
     document_text(object, "name", name);
     document_text(object, "why", why);
-    table_say(table, "Left out: %s: %s.", cli_shown(name), cli_shown(why));
+    table_say(table, "Left out: %s: %s.", name, why);
 }
 
 /* The number of characters in a UTF-8 text. */

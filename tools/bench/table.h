@@ -41,6 +41,7 @@ struct table {
 void table_begin(struct table *table, struct bench *bench, const char *name,
                  const char *const *heads, bool has_goals, uint32_t steps);
 void table_row(struct table *table);
+/* Cells and sentences go through whit_text_show, as names of files may stand in them. */
 void table_cell(struct table *table, const char *format, ...) WHIT_PRINTF(2, 3);
 void table_ms(struct table *table, const struct sample_runs *times); /* "-" without runs */
 /* Adds the row's JSON, which is taken over. */
