@@ -1,6 +1,7 @@
 #include "shader/messages.h"
 
 #include <ctype.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -168,20 +169,15 @@ static void tidy(const char *from, char out[SHADER_REASON_BYTES])
         while (is_name(from[word]))
             word++;
         const char *sign = word ? sign_of(from, word) : NULL;
-        if (sign) {
-            used += (size_t)snprintf(out + used, SHADER_REASON_BYTES - used, "%s", sign);
-        } else if (word) {
-            used +=
-                (size_t)snprintf(out + used, SHADER_REASON_BYTES - used, "%.*s", (int)word, from);
-        } else if (strncmp(from, "' : ", 4) == 0) {
-            used += (size_t)snprintf(out + used, SHADER_REASON_BYTES - used, "': ");
-            from += 3 + strspn(from + 3, " ");
-            continue;
-        } else {
-            out[used++] = *from;
-        }
+        bool colon = strncmp(from, "' : ", 4) == 0;
+        size_t length = word ? word : colon ? 3 + strspn(from + 3, " ") : 1;
+        used += (size_t)snprintf(out + used, SHADER_REASON_BYTES - used, "%.*s",
+                                 sign || colon ? INT_MAX : (int)length,
+                                 sign    ? sign
+                                 : colon ? "': "
+                                         : from);
         used = used < SHADER_REASON_BYTES ? used : SHADER_REASON_BYTES - 1;
-        from += word ? word : 1;
+        from += length;
     }
     while (used && isspace((unsigned char)out[used - 1]))
         used--;

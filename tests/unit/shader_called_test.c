@@ -201,11 +201,17 @@ static bool draw_in_place(whit_renderer *renderer, const uint32_t *calls, whit_i
     return *calls > before;
 }
 
+/* A version of a file. `traces`: behind the version before it its picture takes rays. */
+struct version {
+    const char *text;
+    bool traces;
+};
+
 /* Each version in the same renderer draws the picture of a new renderer, with its own sliders. */
-static void draw_versions(const char *const *versions, const bool *traces, size_t count)
+static void draw_versions(const struct version *versions, size_t count)
 {
     uint32_t calls = 0;
-    own_whit_shader *before = hooks_load(versions[0]);
+    own_whit_shader *before = hooks_load(versions[0].text);
     whit_renderer_params params = params_sized(WIDTH, HEIGHT, before);
     own_whit_image *in_place = NULL;
     params.reuse_rays = true;
@@ -214,13 +220,13 @@ static void draw_versions(const char *const *versions, const bool *traces, size_
     own_whit_renderer *renderer = renderer_of(&params);
     assert_true(draw_in_place(renderer, &calls, &in_place));
     for (size_t i = 1; i < count; ++i) {
-        whit_shader *shader = hooks_load(versions[i]);
+        whit_shader *shader = hooks_load(versions[i].text);
         params.shader = shader;
         assert_int_equal(whit_renderer_set_shader(renderer, &params), WHIT_OK);
         whit_shader_destroy(before);
         before = shader;
-        if (draw_in_place(renderer, &calls, &in_place) != traces[i])
-            fail_msg("%s", versions[i]);
+        if (draw_in_place(renderer, &calls, &in_place) != versions[i].traces)
+            fail_msg("%s", versions[i].text);
         own_whit_image *alone = draw(shader);
         assert_same_image(in_place, alone);
     }
@@ -230,14 +236,13 @@ static void draw_versions(const char *const *versions, const bool *traces, size_
 #define SLIDER(value) "//@ slider k 0 1 " value "\n"
 TEST(a_version_in_place_draws_the_same)
 {
-    static const char *const versions[] = {
-        SLIDER("0.25") SHADE "s.ns * k; }\n" POST("c"),
-        SLIDER("0.5") SHADE "s.ns * k; }\n" POST("c"),
-        "//@ slider l 0 1 0.5\n" SLIDER("0.75") SHADE "s.ns * k + l; }\n" POST("c.bgr"),
-        "//@ slider l 0 1 0.5\n" SLIDER("0.75") SHADE "s.ns * k - l; }\n" POST("c.bgr"),
+    static const struct version versions[] = {
+        {SLIDER("0.25") SHADE "s.ns * k; }\n" POST("c"), true},
+        {SLIDER("0.5") SHADE "s.ns * k; }\n" POST("c"), true},
+        {"//@ slider l 0 1 0.5\n" SLIDER("0.75") SHADE "s.ns * k + l; }\n" POST("c.bgr"), true},
+        {"//@ slider l 0 1 0.5\n" SLIDER("0.75") SHADE "s.ns * k - l; }\n" POST("c.bgr"), true},
     };
-    static const bool traces[] = {true, true, true, true};
-    draw_versions(versions, traces, sizeof versions / sizeof *versions);
+    draw_versions(versions, sizeof versions / sizeof *versions);
 }
 
 /* After an error the renderer draws with the version that it had, and its sliders. */
@@ -274,27 +279,26 @@ TEST(a_refused_version_leaves_the_one_before)
 /* If only the body of post() has changed, no ray is traced. */
 TEST_BY_TURNS(another_post_needs_no_rays, 0, 2)
 {
-    static const char *const versions[] = {
-        SLIDER("0.25") POST("c"),
-        SLIDER("0.25") POST("c.bgr * k"),
-        SLIDER("0.25") POST("c.brg"),
-        SLIDER("0.5") POST("c.bgr * k"),
+    static const struct version versions[] = {
+        {SLIDER("0.25") POST("c"), true},
+        {SLIDER("0.25") POST("c.bgr * k"), false},
+        {SLIDER("0.25") POST("c.brg"), false},
+        {SLIDER("0.5") POST("c.bgr * k"), true},
     };
-    static const bool traces[] = {true, false, false, true};
-    draw_versions(versions, traces, sizeof versions / sizeof *versions);
+    draw_versions(versions, sizeof versions / sizeof *versions);
 }
 
 /* The same with other functions in the file, whose ids in SPIR-V change with post(). */
 TEST_BY_TURNS(another_post_beside_other_functions_needs_no_rays, 1, 2)
 {
-    static const char *const versions[] = {
-        POST("c") SHADE "s.ns * sin(s.p.x * 3.0) + 0.125; }\n",
-        POST("c.bgr * 0.75 + length(c) * vec3(0.5, 0.0, 0.25)") SHADE
-        "s.ns * sin(s.p.x * 3.0) + 0.125; }\n",
-        POST("c.brg") SHADE "s.ns * sin(s.p.x * 5.0) + 0.125; }\n",
+    static const struct version versions[] = {
+        {POST("c") SHADE "s.ns * sin(s.p.x * 3.0) + 0.125; }\n", true},
+        {POST("c.bgr * 0.75 + length(c) * vec3(0.5, 0.0, 0.25)") SHADE
+         "s.ns * sin(s.p.x * 3.0) + 0.125; }\n",
+         false},
+        {POST("c.brg") SHADE "s.ns * sin(s.p.x * 5.0) + 0.125; }\n", true},
     };
-    static const bool traces[] = {true, false, true};
-    draw_versions(versions, traces, sizeof versions / sizeof *versions);
+    draw_versions(versions, sizeof versions / sizeof *versions);
 }
 
 /* The rays of the last picture are reused only for the same view, and only with reuse_rays. */

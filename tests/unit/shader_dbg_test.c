@@ -57,6 +57,23 @@ static whit_renderer *make(const whit_shader *with, uint32_t samples)
     return renderer;
 }
 
+static void drop_report(whit_probe_report **at)
+{
+    whit_probe_report_destroy(*at);
+}
+
+/* Freed at the end of its block: own_report *report = probe_of(...); */
+#define own_report __attribute__((cleanup(drop_report), unused)) whit_probe_report
+
+/* The report of a pixel, with `records` rays at most (0: as many as there are). */
+static whit_probe_report *probe_of(whit_renderer *renderer, uint32_t x, uint32_t y,
+                                   uint32_t records)
+{
+    whit_probe_report *report = NULL;
+    assert_int_equal(whit_probe(renderer, x, y, records, &report), WHIT_OK);
+    return report;
+}
+
 /* Value `at` of call `index`, as text. */
 static const char *text_of(const whit_probe_report *report, uint32_t index, uint32_t at)
 {
@@ -90,8 +107,7 @@ static uint32_t count_of(const whit_probe_report *report, whit_probe_end end_a,
 TEST(values_are_those_of_the_first_sample_in_the_order_of_rays)
 {
     own_whit_renderer *renderer = make(shader, 4);
-    whit_probe_report *report;
-    assert_int_equal(whit_probe(renderer, X, Y, 0, &report), WHIT_OK);
+    own_report *report = probe_of(renderer, X, Y, 0);
     uint32_t met = count_of(report, WHIT_PROBE_OPAQUE, WHIT_PROBE_DIVIDED);
     uint32_t missed = count_of(report, WHIT_PROBE_MISSED, WHIT_PROBE_MISSED);
     assert_true(met > 2 && missed > 0);
@@ -117,49 +133,38 @@ TEST(values_are_those_of_the_first_sample_in_the_order_of_rays)
         assert_int_equal(value->generation, report->rays[value->ray].generation);
         assert_true(i == 0 || value->ray > bounces->values[i - 1].ray);
     }
-    whit_probe_report_destroy(report);
 }
 
 TEST(rays_that_are_dropped_have_no_values)
 {
     own_whit_renderer *renderer = make(shader, 1);
-    whit_probe_report *all, *some;
-    assert_int_equal(whit_probe(renderer, X, Y, 0, &all), WHIT_OK);
-    assert_int_equal(whit_probe(renderer, X, Y, 2, &some), WHIT_OK);
+    own_report *all = probe_of(renderer, X, Y, 0), *some = probe_of(renderer, X, Y, 2);
     assert_true(some->dropped > 0);
     assert_int_equal(some->calls[2].count, all->calls[2].count);
     assert_int_equal(some->calls[2].value_count, 2);
     assert_int_equal(some->calls[8].value_count, 1);
-    whit_probe_report_destroy(all);
-    whit_probe_report_destroy(some);
 }
 
 TEST(a_pixel_tells_of_itself_and_twice_the_same)
 {
     own_whit_renderer *renderer = make(shader, 1);
-    whit_probe_report *first, *second;
-    assert_int_equal(whit_probe(renderer, X, Y, 0, &first), WHIT_OK);
-    assert_int_equal(whit_probe(renderer, FLOOR_X, FLOOR_Y, 0, &second), WHIT_OK);
-    assert_call(second, 0, 2, "pixel()", 1, "(5, 40)");
-    whit_probe_report_destroy(second);
-    assert_int_equal(whit_probe(renderer, X, Y, 0, &second), WHIT_OK);
+    own_report *first = probe_of(renderer, X, Y, 0);
+    own_report *other = probe_of(renderer, FLOOR_X, FLOOR_Y, 0);
+    own_report *second = probe_of(renderer, X, Y, 0);
+    assert_call(other, 0, 2, "pixel()", 1, "(5, 40)");
     for (uint32_t i = 0; i < first->call_count; ++i) {
         assert_int_equal(second->calls[i].count, first->calls[i].count);
         assert_memory_equal(second->calls[i].values, first->calls[i].values,
                             sizeof first->calls[i].values);
     }
-    whit_probe_report_destroy(first);
-    whit_probe_report_destroy(second);
 }
 
 static void assert_calls(whit_renderer *renderer, uint32_t count)
 {
-    whit_probe_report *report;
-    assert_int_equal(whit_probe(renderer, X, Y, 0, &report), WHIT_OK);
+    own_report *report = probe_of(renderer, X, Y, 0);
     assert_int_equal(report->call_count, count);
     if (count)
         assert_call(report, 1, 4, "vec2(0.1, -0.0)", 1, "(0.100000001, -0)");
-    whit_probe_report_destroy(report);
 }
 
 TEST(another_view_and_another_version_are_followed)
@@ -214,21 +219,13 @@ TEST(a_picture_has_nothing_of_it)
 /* A probe draws the pixel with kernels that record, and has the same values. */
 TEST(a_value_that_is_recorded_is_the_value)
 {
-    whit_renderer *renderer = make(plain, 4);
-    whit_probe_report *report;
-    whit_image *image = image_of(renderer, WHIT_AOV_COLOR);
+    own_whit_renderer *renderer = make(plain, 4), *looked_at = make(shader, 4);
+    own_whit_image *image = image_of(renderer, WHIT_AOV_COLOR);
     const float *pixel = whit_image_floats(image) + 4 * (Y * WIDTH + X);
-    whit_renderer *looked_at = make(shader, 4);
-    assert_int_equal(whit_probe(looked_at, X, Y, 0, &report), WHIT_OK);
+    own_report *report = probe_of(looked_at, X, Y, 0), *without = probe_of(renderer, X, Y, 0);
     assert_memory_equal(report->color, pixel, 3 * sizeof *pixel);
-    whit_probe_report_destroy(report);
-    assert_int_equal(whit_probe(renderer, X, Y, 0, &report), WHIT_OK);
-    assert_int_equal(report->call_count, 0);
-    assert_memory_equal(report->color, pixel, 3 * sizeof *pixel);
-    whit_probe_report_destroy(report);
-    whit_image_destroy(image);
-    whit_renderer_destroy(looked_at);
-    whit_renderer_destroy(renderer);
+    assert_int_equal(without->call_count, 0);
+    assert_memory_equal(without->color, pixel, 3 * sizeof *pixel);
 }
 
 TESTS_IN(begin, end)
