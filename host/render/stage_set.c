@@ -160,11 +160,6 @@ static bool is_other(const struct variant_job *a, const struct variant_job *b, b
                              pipeline_is_same(&a->params, &b->params)));
 }
 
-static bool both_have(const struct stages_job *a, const struct stages_job *b, enum stage stage)
-{
-    return a->wanted[stage] && b->wanted[stage];
-}
-
 /* Drops from `job` the kernels that are the same as in `was`. */
 static void drop_same(const struct stages_job *was, struct stages_job *job)
 {
@@ -175,7 +170,7 @@ static void drop_same(const struct stages_job *was, struct stages_job *job)
     for (int i = 0; i < STAGE_COUNT; ++i) {
         bool closely = false;
         for (size_t k = 0; k < sizeof own / sizeof *own; ++k)
-            closely = closely || ((int)own[k] != i && both_have(was, job, own[k]));
+            closely |= (int)own[k] != i && was->wanted[own[k]] && job->wanted[own[k]];
         job->wanted[i] = job->wanted[i] &&
                          (!was->wanted[i] || is_other(&was->stages[i], &job->stages[i], closely));
     }

@@ -118,21 +118,14 @@ static uint32_t material_flags(const struct scene_material *m)
 static whit_result add_opacity(struct material_upload *up, const struct scene_material *m,
                                struct gpu_material *out)
 {
-    const struct scene *scene = up->renderer->scene;
     out->tex_opacity = TEXTURE_NONE;
     if (m->alpha == SCENE_ALPHA_OPAQUE || !up->renderer->effects.called[SCENE_EFFECT_CUTOUTS])
         return WHIT_OK;
-    const struct scene_texture_use *own = &m->textures[SCENE_SLOT_OPACITY];
-    if (own->texture != SCENE_NONE) {
-        if (has_alpha(scene, own->texture))
-            out->flags |= MATERIAL_OPACITY_ALPHA;
-        return add_use(up, m, SCENE_SLOT_OPACITY, &out->tex_opacity);
-    }
-    const struct scene_texture_use *diffuse = &m->textures[SCENE_SLOT_DIFFUSE];
-    if (!has_alpha(scene, diffuse->texture))
-        return WHIT_OK;
-    out->flags |= MATERIAL_OPACITY_ALPHA;
-    return add_use(up, m, SCENE_SLOT_DIFFUSE, &out->tex_opacity);
+    bool own = m->textures[SCENE_SLOT_OPACITY].texture != SCENE_NONE;
+    enum scene_slot slot = own ? SCENE_SLOT_OPACITY : SCENE_SLOT_DIFFUSE;
+    bool alpha = has_alpha(up->renderer->scene, m->textures[slot].texture);
+    out->flags |= alpha ? MATERIAL_OPACITY_ALPHA : 0;
+    return own || alpha ? add_use(up, m, slot, &out->tex_opacity) : WHIT_OK;
 }
 
 /* Whether the kernels read the textures of a slot. */
