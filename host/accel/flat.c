@@ -197,41 +197,28 @@ static float placed_radius(const struct flattening *f, uint32_t instance, uint32
     return (float)(radius * f->pose->instances[instance].m[0]);
 }
 
-static void place_spheres(struct flattening *f, const struct flat_span *span)
-{
-    const struct accel_flat *flat = f->accel->world;
-    uint32_t count = mesh_of(f, span->instance)->sphere_count;
-    uint32_t end = span->end < count ? span->end : count;
-    uint32_t first = flat->first_triangle[span->instance];
-    uint32_t first_vertex = flat->first_vertex[span->instance];
-    for (uint32_t s = span->begin; s < end; ++s) {
-        uint32_t *corner = &f->indices[3 * ((size_t)first + s)];
-        corner[0] = corner[1] = corner[2] = first_vertex + s;
-        f->boxes[first + s] = accel_sphere_box(&f->positions[3 * (size_t)corner[0]],
-                                               placed_radius(f, span->instance, s));
-        f->owners[first + s] = span->instance;
-    }
-}
-
-static void place_triangles(void *user, uint32_t index)
+/* The corners of a sphere are three times its centre. */
+static void place_primitives(void *user, uint32_t index)
 {
     struct flattening *f = user;
     const struct accel_flat *flat = f->accel->world;
     const struct flat_span *span = &flat->spans[index];
     const struct scene_mesh *mesh = mesh_of(f, span->instance);
-    uint32_t end = span->end < mesh->triangle_count ? span->end : mesh->triangle_count;
+    bool spheres = mesh->sphere_count > 0;
+    uint32_t count = scene_mesh_primitives(mesh), end = span->end < count ? span->end : count;
     uint32_t first = flat->first_triangle[span->instance];
-    for (uint32_t t = span->begin; t < end; ++t) {
-        uint32_t *corner = &f->indices[3 * ((size_t)first + t)];
-        for (size_t k = 0; k < 3; ++k)
-            corner[k] = flat->first_vertex[span->instance] + mesh->indices[3 * (size_t)t + k];
-        f->boxes[first + t] = accel_triangle_box(&f->positions[3 * (size_t)corner[0]],
-                                                 &f->positions[3 * (size_t)corner[1]],
-                                                 &f->positions[3 * (size_t)corner[2]]);
-        f->owners[first + t] = span->instance;
+    for (uint32_t i = span->begin; i < end; ++i) {
+        uint32_t *corner = &f->indices[3 * ((size_t)first + i)];
+        const float *p[3];
+        for (size_t k = 0; k < 3; ++k) {
+            corner[k] = flat->first_vertex[span->instance] +
+                        (spheres ? i : mesh->indices[3 * (size_t)i + k]);
+            p[k] = &f->positions[3 * (size_t)corner[k]];
+        }
+        f->boxes[first + i] = spheres ? accel_sphere_box(p[0], placed_radius(f, span->instance, i))
+                                      : accel_triangle_box(p[0], p[1], p[2]);
+        f->owners[first + i] = span->instance;
     }
-    if (mesh->sphere_count)
-        place_spheres(f, span);
     if (f->whole && span->begin == 0)
         material_bits_whole(flat->materials, mesh, f->whole + first);
 }
@@ -296,7 +283,7 @@ static whit_result world_build(struct flattening *f)
     result = refuse_range(f);
     if (result != WHIT_OK)
         return result;
-    threads_for(threads, flat->span_count, place_triangles, f);
+    threads_for(threads, flat->span_count, place_primitives, f);
     const struct bvh_triangles triangles = {f->positions, f->indices, f->whole};
     return bvh_build(&accel->log, f->boxes, count, &triangles, &accel->params, &f->tree);
 }

@@ -2,7 +2,6 @@
    each axis; a node sweeps its run of each list, and a split keeps the order of all three (Wald and
    Havran 2006, "On building fast kd-trees for ray tracing, and on doing that in O(N log N)", 4.3,
    for boxes that are not split). */
-#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "base/array.h"
@@ -28,7 +27,7 @@ enum { DIGIT_BITS = 11, DIGITS = 3, BUCKETS = 1 << DIGIT_BITS };
 struct sorting {
     struct sweep *sweep;
     uint32_t count;
-    _Atomic bool failed;
+    bool failed[3];
 };
 
 static uint32_t digit_of(uint64_t item, uint32_t digit)
@@ -67,7 +66,7 @@ static void sort_axis(void *user, uint32_t axis)
     uint32_t count = sorting->count, histogram[DIGITS][BUCKETS];
     uint64_t *const begin = array_alloc(2 * (size_t)count, sizeof *begin);
     if (!begin) {
-        atomic_store(&sorting->failed, true);
+        sorting->failed[axis] = true;
         return;
     }
     uint64_t *items = begin, *other = begin + count;
@@ -250,7 +249,6 @@ static whit_result sweep_prepare(const whit_log *log, struct sweep *sweep, uint3
                                  uint32_t thread_count)
 {
     struct sorting sorting = {.sweep = sweep, .count = count};
-    atomic_init(&sorting.failed, false);
     sweep->mark = array_alloc(count, sizeof *sweep->mark);
     bool allocated = sweep->mark != NULL;
     for (uint32_t a = 0; a < 3; ++a) {
@@ -259,7 +257,7 @@ static whit_result sweep_prepare(const whit_log *log, struct sweep *sweep, uint3
     }
     if (allocated)
         threads_for(count < THREADED_MIN ? 1 : thread_count, 3, sort_axis, &sorting);
-    if (allocated && !atomic_load(&sorting.failed))
+    if (allocated && !sorting.failed[0] && !sorting.failed[1] && !sorting.failed[2])
         return WHIT_OK;
     log_error(log, "tree over %u boxes: out of memory", count);
     return WHIT_ERROR_MEMORY;

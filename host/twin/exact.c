@@ -119,7 +119,7 @@ static void add_product(struct wide *w, int target, const int points[3], int i, 
 /* The determinants of three points: e_a = d.(b x c) about the origin is det(d, b, c) - det(d, b, o)
    - det(d, o, c), and so on; and N = a.(b x c) likewise. */
 static const struct {
-    int8_t target, points[3];
+    int target, points[3];
     bool negative;
 } determinants[13] = {
     {WIDE_D, {POINT_DIR, POINT_B, POINT_C}, false},
@@ -140,8 +140,7 @@ static const struct {
 static void add_determinants(struct wide *w)
 {
     for (int n = 0; n < 13; ++n) {
-        const int points[3] = {determinants[n].points[0], determinants[n].points[1],
-                               determinants[n].points[2]};
+        const int *points = determinants[n].points;
         bool negative = determinants[n].negative;
         for (int i = 0; i < 3; ++i) {
             int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
