@@ -122,6 +122,7 @@ static void say_difference(const struct view *view, char *text, size_t bytes)
 static void switch_settings(struct view *view)
 {
     view->panels.settings = !view->panels.settings;
+    view->panels.states_known = false; /* other files may have come */
     if (view->panels.effects)
         panels_switch_effects(view);
 }

@@ -121,6 +121,12 @@ fi
 # ---- Files of settings ----
 
 if part 1 2; then
+    play "a file that comes" "$CUBE" --size 320x400 --ui-scale 0.5 <<END
+none: press Tab
+do echo "--size 320x400" >whit-0001.view
+one: await whit-0001.view, press Tab x2, still, choose files, still, choose whit-0001.view | toast = whit-0001.view: these settings
+END
+    rm whit-0001.view
     play "saved" "$SCENES/8k.json" --size 96x64 <<END
 still
 move 40 30
