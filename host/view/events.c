@@ -312,6 +312,10 @@ whit_result events_load(const whit_log *log, const char *path, struct event_list
     size_t bytes;
     *list = (struct event_list){0};
     whit_result result = file_read(log, NULL, path, REPLAY_BYTES_MAX, &list->text, &bytes);
+    if (result == WHIT_OK && memchr(list->text, '\0', bytes)) {
+        log_error(log, "%s: it is no text, as it holds a byte 0", path);
+        result = WHIT_ERROR_INPUT;
+    }
     if (result == WHIT_OK)
         result = read_lines(log, path, list);
     if (result != WHIT_OK)

@@ -300,6 +300,8 @@ for text in "jump" "until" "await" "choose" "clock" "clock false" "key T" "key T
     "char 65x" "button left up down" "wait -1" "wait soon" "button none down" "char x" "shot" "drop"; do
     bad "$text"
 done
+printf 'still\n\000jump\n' >zero.replay
+refuse 2 "a byte 0" "zero.replay: it is no text" view "$CUBE" $SMALL --replay zero.replay
 refuse 2 "no replay" "nowhere.replay" view "$CUBE" --replay nowhere.replay
 refuse 2 "no place for a record" "nowhere/record" view "$CUBE" --record nowhere/record --frames 1
 refuse 2 "no room for a record" "/dev/full: cannot be written" view "$CUBE" $SMALL --record /dev/full --frames 1
