@@ -193,7 +193,13 @@ whit_result views_take_sample(struct renderer *renderer, const struct gpu_chunk 
 whit_result views_leave(struct renderer *renderer)
 {
     const whit_renderer_params params = renderer->params;
-    return renderer->views.count ? renderer_set_view(renderer, &params) : WHIT_OK;
+    uint32_t count = renderer->views.count;
+    whit_result result = count ? renderer_set_view(renderer, &params) : WHIT_OK;
+    if (result == WHIT_OK)
+        return WHIT_OK;
+    renderer->views.count = count; /* the next call leaves them, or makes everything anew */
+    renderer->between_views = false;
+    return result;
 }
 
 whit_result renderer_render_views(struct renderer *renderer, const whit_camera *cameras,

@@ -138,6 +138,25 @@ TEST(a_view_that_failed_is_set_as_a_whole)
     }
 }
 
+/* A picture after views needs other buffers. Where there is no room for them, the next call makes
+   them. */
+TEST(a_picture_after_views_can_be_asked_for_again)
+{
+    static const whit_camera cameras[2] = {CAMERA_AT(3, 2.5, 4, 0, 0.6, 0, 0, 1, 0, 35),
+                                           CAMERA_AT(4, 2.5, 3, 0, 0.6, 0, 0, 1, 0, 35)};
+    own_fixture f = fixture_open(file_scene("cube"), NULL, &steps[0]);
+    own_image before = render(&f);
+    for (int i = 0; i < 2; ++i) {
+        assert_int_equal(renderer_render_views(f.renderer, cameras, 2), WHIT_OK);
+        no_room = true;
+        assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_MEMORY);
+        assert_int_equal(renderer_render(f.renderer), WHIT_ERROR_MEMORY);
+        no_room = false;
+    }
+    own_image again = render(&f);
+    assert_same_image("after views", &before, &again);
+}
+
 /* The rays of one block need larger queues, for which there is no memory in the first picture. */
 TEST(queues_that_could_not_grow_are_made_anew)
 {
