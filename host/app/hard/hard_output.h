@@ -17,7 +17,6 @@ struct hard {
     bool quick;
     whit_hard_report *report;
     struct cli_progress progress;
-    double seconds; /* the run took */
 };
 
 /* On standard output. */

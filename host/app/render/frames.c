@@ -112,8 +112,7 @@ static whit_result keep_times(struct sequence *sequence, const struct frame_time
 {
     if (ARRAY_PUSH(sequence->each, sequence->count, sequence->capacity, *times))
         return WHIT_OK;
-    return CLI_FAIL(WHIT_ERROR_MEMORY, "out of memory for the times of %u frames",
-                    sequence->count + 1);
+    return cli_no_memory();
 }
 
 static whit_result find_medians(struct sequence *sequence)
@@ -126,7 +125,7 @@ static whit_result find_medians(struct sequence *sequence)
         return WHIT_OK;
     double *values = malloc((size_t)count * sizeof *values);
     if (!values)
-        return CLI_FAIL(WHIT_ERROR_MEMORY, "out of memory for the times of %u frames", count);
+        return cli_no_memory();
     for (size_t f = 0; f < sizeof fields / sizeof *fields; ++f) {
         for (uint32_t i = 0; i < count; ++i)
             values[i] = *(const double *)((const char *)&sequence->each[i] + fields[f]);

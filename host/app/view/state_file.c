@@ -20,20 +20,20 @@ bool state_file_open(struct state_file *file, const char *path, char *said, size
     if (from && file->text)
         length = fread(file->text, 1, STATE_BYTES_MAX + 1, from);
     bool failed = !from || !file->text || ferror(from);
+    bool good = !failed && length <= STATE_BYTES_MAX && !memchr(file->text, '\0', length);
     if (failed)
         snprintf(said, said_bytes, "%s: cannot be read: %s", path,
                  from ? strerror(errno ? errno : EIO) : why);
-    else if (length > STATE_BYTES_MAX || memchr(file->text, '\0', length))
+    else if (!good)
         snprintf(said, said_bytes, "%s: not a file of settings", path);
     if (from)
         fclose(from);
-    if (!failed && length <= STATE_BYTES_MAX && !memchr(file->text, '\0', length)) {
+    if (good)
         file->text[length] = '\0';
-        return true;
-    }
-    free(file->text);
-    file->text = NULL;
-    return false;
+    else
+        free(file->text);
+    file->text = good ? file->text : NULL;
+    return good;
 }
 
 /* Splits a line into words behind argv[0], the command's name; false where it has too many. */
