@@ -9,6 +9,7 @@
 #include "../scenes.h"
 #include "accel/accel.h"
 #include "accel/extent.h"
+#include "accel/validate.h"
 #include "messages_fixture.h"
 #include "random_fixture.h"
 #include "scene/pose.h"
@@ -285,6 +286,28 @@ static inline struct world world_of_soup(struct soup soup, whit_accel_params par
     struct world world = world_of(soup_scene(&soup), params);
     world.soup = soup;
     return world;
+}
+
+/* A word of trees, and a value that makes them wrong. */
+struct change {
+    void *word;
+    uint32_t value;
+};
+
+/* Checks that trees are sound, but not with any one of the changes. */
+static inline void check_changes(const struct accel *accel, const struct change *changes,
+                                 size_t count)
+{
+    assert_int_equal(accel_validate(accel), WHIT_OK);
+    for (size_t i = 0; i < count; ++i) {
+        uint32_t kept;
+        memcpy(&kept, changes[i].word, sizeof kept);
+        memcpy(changes[i].word, &changes[i].value, sizeof kept);
+        if (accel_validate(accel) != WHIT_ERROR_FAILED)
+            fail_msg("case %zu was misjudged", i);
+        memcpy(changes[i].word, &kept, sizeof kept);
+    }
+    assert_int_equal(accel_validate(accel), WHIT_OK);
 }
 
 /* ---- Rays ---- */
