@@ -1,6 +1,5 @@
 #include "shader/compile.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -211,20 +210,15 @@ static bool find_open_brace(const struct shader_text *text, uint32_t *file, uint
     return false;
 }
 
-static bool is_of_word(char c)
-{
-    return isalnum((unsigned char)c) || c == '_';
-}
-
 /* Finds the first occurrence of `token` between `at` and `end`, in a line that begins at `begin`. A
    word within a longer word does not count. */
 static const char *find_token(const char *begin, const char *at, const char *end, const char *token,
                               size_t bytes)
 {
-    bool word = is_of_word(token[0]);
+    bool word = scan_is_of_word(token[0]);
     for (; at + bytes <= end; ++at) {
-        bool within = word && ((at > begin && is_of_word(at[-1])) ||
-                               (at + bytes < end && is_of_word(at[bytes])));
+        bool within = word && ((at > begin && scan_is_of_word(at[-1])) ||
+                               (at + bytes < end && scan_is_of_word(at[bytes])));
         if (!within && memcmp(at, token, bytes) == 0)
             return at;
     }
@@ -398,9 +392,8 @@ static void make_own_tag(char own[GLSLANG_OWN_BYTES])
     snprintf(own, GLSLANG_OWN_BYTES, "whit%016llx.", (unsigned long long)number);
 }
 
-/* Makes the request for the compiler's process, with the kernel's text. NULL: an error was
-   reported. */
-static uint8_t *make_question(const struct place *place, size_t *bytes)
+/* Makes the request for the compiler's process, with the kernel's text; free() it. */
+static whit_result make_question(const struct place *place, uint8_t **request, size_t *bytes)
 {
     struct glslang_question question = {.trust = place->request->trust,
                                         .names = place->request->names,
@@ -408,25 +401,27 @@ static uint8_t *make_question(const struct place *place, size_t *bytes)
                                             place->request->base_bytes / sizeof(uint32_t)};
     make_own_tag(question.own);
     struct expanded expanded;
-    if (!expand_kernel(place->log, place->text, place->request, question.own, &expanded,
-                       place->errors))
-        return NULL;
+    whit_result result = expand_kernel(place->log, place->text, place->request, question.own,
+                                       &expanded, place->errors);
+    if (result != WHIT_OK)
+        return result;
     question.bytes = expanded.bytes;
     question.user_at = expanded.user_at;
     question.user_end = expanded.user_end;
     size_t behind = base_at(expanded.bytes), base_bytes = place->request->base_bytes;
     *bytes = sizeof question + behind + base_bytes;
-    uint8_t *request = malloc(*bytes);
-    if (request) {
-        memcpy(request, &question, sizeof question);
-        memcpy(request + sizeof question, expanded.text, expanded.bytes + 1);
+    *request = malloc(*bytes);
+    if (*request) {
+        memcpy(*request, &question, sizeof question);
+        memcpy(*request + sizeof question, expanded.text, expanded.bytes + 1);
         if (base_bytes)
-            memcpy(request + sizeof question + behind, place->request->base, base_bytes);
+            memcpy(*request + sizeof question + behind, place->request->base, base_bytes);
     } else {
         log_error(place->log, "no memory for the text of a kernel");
+        result = WHIT_ERROR_MEMORY;
     }
     free(expanded.text);
-    return request;
+    return result;
 }
 
 static void warn_of_open(struct shader_compiler *compiler, const struct child_reply *reply)
@@ -448,16 +443,17 @@ whit_result shader_compile(struct shader_compiler *compiler, const struct shader
                                 errors};
     struct child_limits limits = child_limits_of(compiler, request);
     size_t bytes;
-    uint8_t *question = make_question(&place, &bytes);
-    if (!question)
-        return WHIT_ERROR_INPUT;
+    uint8_t *question;
+    whit_result result = make_question(&place, &question, &bytes);
+    if (result != WHIT_OK)
+        return result;
     struct child_reply reply;
     enum child_end end = run(compiler, &limits, question, bytes, &reply);
     free(question);
     if (end != CHILD_OPEN)
         warn_of_open(compiler, &reply);
-    whit_result result = end == CHILD_DONE ? take_reply(&place, &reply, code)
-                                           : explain(&place, end, &limits, &reply);
+    result = end == CHILD_DONE ? take_reply(&place, &reply, code)
+                               : explain(&place, end, &limits, &reply);
     child_reply_free(&reply);
     return result;
 }

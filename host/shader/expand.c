@@ -263,20 +263,24 @@ static void put_own(struct expansion *e, const struct own_file *file)
     }
 }
 
-static void explain(const struct expansion *e, const whit_log *log, struct shader_errors *errors)
+static whit_result explain(const struct expansion *e, const whit_log *log,
+                           struct shader_errors *errors)
 {
-    if (e->failed)
+    if (e->failed) {
         log_error(log, "no memory for the text of a kernel");
-    else if (e->large)
+        return WHIT_ERROR_MEMORY;
+    }
+    if (e->large)
         shader_error_add(log, errors, has_user(e) ? e->text->files[0].name : e->request->kernel, 0,
                          0, "larger than 16 MiB with all that it includes");
     else
         shader_error_add(log, errors, "whit", 0, 0, "no shader %s is embedded", e->missing);
+    return WHIT_ERROR_INPUT;
 }
 
-bool expand_kernel(const whit_log *log, const struct shader_text *text,
-                   const struct shader_request *request, const char *own, struct expanded *expanded,
-                   struct shader_errors *errors)
+whit_result expand_kernel(const whit_log *log, const struct shader_text *text,
+                          const struct shader_request *request, const char *own,
+                          struct expanded *expanded, struct shader_errors *errors)
 {
     struct expansion e = {.text = text, .request = request, .own = own};
     const struct shader_stages *stages = request->stages;
@@ -296,9 +300,8 @@ bool expand_kernel(const whit_log *log, const struct shader_text *text,
     *expanded = (struct expanded){0};
     if (goes_on(&e) && e.out) {
         *expanded = (struct expanded){e.out, e.used, e.user_at, e.user_end};
-        return true;
+        return WHIT_OK;
     }
-    explain(&e, log, errors);
     free(e.out);
-    return false;
+    return explain(&e, log, errors);
 }

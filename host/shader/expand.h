@@ -23,10 +23,10 @@ size_t expand_included(const char *line, const char **name);
    "x.glsl". */
 void expand_join(const char *from, const char *name, size_t length, char out[EXPAND_NAME_BYTES]);
 
-/* The text that the compiler gets. False: no memory, no such kernel or too much text, which was
-   logged, and added to `errors`; *expanded is empty. */
-bool expand_kernel(const whit_log *log, const struct shader_text *text,
-                   const struct shader_request *request, const char *own, struct expanded *expanded,
-                   struct shader_errors *errors);
+/* The text that the compiler gets. WHIT_ERROR_MEMORY, or _INPUT (no such kernel, or too much text,
+   which `errors` has too): it was logged, and *expanded is empty. */
+WHIT_CHECK whit_result expand_kernel(const whit_log *log, const struct shader_text *text,
+                                     const struct shader_request *request, const char *own,
+                                     struct expanded *expanded, struct shader_errors *errors);
 
 #endif

@@ -143,11 +143,6 @@ static const char *const signs[][2] = {
     {"FLOATCONSTANT", "a number"},
 };
 
-static bool is_name(char c)
-{
-    return isalnum((unsigned char)c) || c == '_';
-}
-
 static const char *sign_of(const char *word, size_t length)
 {
     for (size_t i = 0; i < sizeof signs / sizeof *signs; ++i) {
@@ -166,7 +161,7 @@ static void tidy(const char *from, char out[SHADER_REASON_BYTES])
     from += strspn(from, " ");
     while (*from && used + 8 < SHADER_REASON_BYTES) {
         size_t word = 0;
-        while (is_name(from[word]))
+        while (scan_is_of_word(from[word]))
             word++;
         const char *sign = word ? sign_of(from, word) : NULL;
         bool colon = strncmp(from, "' : ", 4) == 0;
@@ -239,7 +234,7 @@ static bool is_own_macro(const struct glslang_question *question, const char *na
     char define[SHADER_REASON_BYTES + 16];
     size_t length = (size_t)snprintf(define, sizeof define, "\n#define %s", name);
     for (const char *at = strstr(question->text, define); at; at = strstr(at + 1, define)) {
-        if (!is_name(at[length]))
+        if (!scan_is_of_word(at[length]))
             return at < question->text + question->user_at;
     }
     return false;

@@ -367,13 +367,15 @@ char *shader_program_expand(const whit_log *log, const whit_shader *shader, enum
 {
     struct kernel_parts parts;
     struct kernel_request of;
-    struct expanded expanded = {0};
+    struct expanded expanded;
+    char *text = NULL;
     if (parts_init(log, shader, kernel == HOOK_KERNEL_TEST ? TEXT_TESTS : TEXT_PLAIN, &parts)) {
         kernel_request_init(shader, &parts, &of);
-        (void)expand_kernel(log, &parts.user, &of.request, "whit.", &expanded, NULL);
+        if (expand_kernel(log, &parts.user, &of.request, "whit.", &expanded, NULL) == WHIT_OK)
+            text = expanded.text;
     }
     parts_finish(&parts);
-    return expanded.text;
+    return text;
 }
 
 /* Fills in what whit_shader_info points to. */

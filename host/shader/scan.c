@@ -12,7 +12,7 @@ static bool is_blank(char c)
     return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }
 
-static bool is_word(char c)
+bool scan_is_of_word(char c)
 {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
@@ -124,7 +124,7 @@ static bool skip_blanks(struct scan *scan)
 static void take_word(struct scan *scan)
 {
     size_t used = 0;
-    for (char c; is_word(c = look(scan)); step(scan)) {
+    for (char c; scan_is_of_word(c = look(scan)); step(scan)) {
         if (used + 1 < sizeof scan->text)
             scan->text[used++] = c;
     }
@@ -193,7 +193,7 @@ bool scan_next(struct scan *scan)
         return take_directive(scan);
     if (c == '"')
         return take_string(scan);
-    if (is_word(c)) {
+    if (scan_is_of_word(c)) {
         scan->kind = SCAN_WORD;
         take_word(scan);
         return true;

@@ -35,6 +35,9 @@ struct scan {
     const char *reason;
 };
 
+/* Whether a character may be part of a word. */
+bool scan_is_of_word(char c);
+
 void scan_begin(struct scan *scan, const char *text, size_t bytes);
 /* Reads the next token; false at the end, or where the text is damaged. Comments are skipped, and
    lines that end with a backslash are joined with the next. */

@@ -184,7 +184,8 @@ TEST_IN(defines_stand_behind_the_extensions, compiler_begin, compiler_end)
                                      .defines = defines,
                                      .define_count = 2};
     struct expanded expanded;
-    assert_true(expand_kernel(&warnings_log, NULL, &request, "whit.", &expanded, &errors));
+    assert_int_equal(expand_kernel(&warnings_log, NULL, &request, "whit.", &expanded, &errors),
+                     WHIT_OK);
     const char *text = expanded.text;
     assert_int_equal(strlen(text), expanded.bytes);
     const char *extension = strstr(text, "#extension GL_GOOGLE_include_directive");
