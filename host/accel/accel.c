@@ -135,11 +135,10 @@ static whit_result meshes_place(struct creation *creation)
         records += tree->reference_count;
         triangles += tree->primitive_count;
         accel->clipped |= tree->clipped;
-        if (nodes > BVH_FIRST_MASK || records > BVH_FIRST_MASK) {
-            log_error(&accel->log, "%s: more than %u nodes or triangles: split the scene",
-                      accel->scene->name, BVH_FIRST_MASK);
-            return WHIT_ERROR_INPUT;
-        }
+        if (nodes > BVH_FIRST_MASK || records > BVH_FIRST_MASK)
+            return log_failure(&accel->log, WHIT_ERROR_INPUT,
+                               "%s: more than %u nodes or triangles: split the scene",
+                               accel->scene->name, BVH_FIRST_MASK);
         if (tree->depth > accel->mesh_depth)
             accel->mesh_depth = tree->depth;
         uint32_t larger =
@@ -201,10 +200,9 @@ static whit_result creation_alloc(struct creation *creation)
     accel->mesh_count = scene->mesh_count;
     accel->instance_count = scene->instance_count;
     uint64_t capacity = 2 * (uint64_t)(scene->instance_count ? scene->instance_count : 1) + 2;
-    if (capacity > BVH_FIRST_MASK) {
-        log_error(&accel->log, "%s: %u instances are too many", scene->name, scene->instance_count);
-        return WHIT_ERROR_INPUT;
-    }
+    if (capacity > BVH_FIRST_MASK)
+        return log_failure(&accel->log, WHIT_ERROR_INPUT, "%s: %u instances are too many",
+                           scene->name, scene->instance_count);
     accel->instance_node_capacity = (uint32_t)capacity;
     accel->meshes = array_alloc_zeroed(scene->mesh_count, sizeof *accel->meshes);
     accel->instances = array_alloc_aligned(scene->instance_count, sizeof *accel->instances);
@@ -256,11 +254,11 @@ static whit_result bare_check(struct accel *accel)
     accel->iterations = (uint32_t)iterations;
     if (primitives <= ACCEL_BARE_MAX && iterations <= ACCEL_ITERATIONS_MAX)
         return WHIT_OK;
-    log_error(&accel->log,
-              "%s: without trees every ray tests every primitive, and %llu over all instances are "
-              "too many: %u are possible, fewer in thousands of instances",
-              scene->name, (unsigned long long)primitives, ACCEL_BARE_MAX);
-    return WHIT_ERROR_USAGE;
+    return log_failure(
+        &accel->log, WHIT_ERROR_USAGE,
+        "%s: without trees every ray tests every primitive, and %llu over all instances are "
+        "too many: %u are possible, fewer in thousands of instances",
+        scene->name, (unsigned long long)primitives, ACCEL_BARE_MAX);
 }
 
 static whit_result pose_at_start(struct accel *accel)
@@ -280,10 +278,8 @@ whit_result accel_create(const whit_log *log, const struct scene *scene,
     double begin_ms = clock_ms();
     *out = NULL;
     struct accel *accel = array_alloc_zeroed(1, sizeof *accel);
-    if (!accel) {
-        log_error(log, "%s: out of memory for its trees", scene->name);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!accel)
+        return log_failure(log, WHIT_ERROR_MEMORY, "%s: out of memory for its trees", scene->name);
     accel->scene = scene;
     accel->log = log_or_silence(log);
     accel->params = params ? *params : (whit_accel_params){0};

@@ -131,8 +131,8 @@ whit_result accel_widen(struct accel *accel)
                          &out->instance_depth);
     if (!good) {
         accel_bvh8_finish(out); /* trees made in part are not kept */
-        log_error(&accel->log, "%s: out of memory for its trees", accel->scene->name);
-        return WHIT_ERROR_MEMORY;
+        return log_failure(&accel->log, WHIT_ERROR_MEMORY, "%s: out of memory for its trees",
+                           accel->scene->name);
     }
     for (uint32_t i = 0; i < accel->instance_count; ++i)
         accel->instances[i].root8 = out->mesh_roots[accel->flat ? 0 : accel->instances[i].mesh];

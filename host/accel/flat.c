@@ -142,10 +142,9 @@ whit_result accel_flat_create(struct accel *accel)
     accel->instances = array_alloc_aligned(scene->instance_count, sizeof *accel->instances);
     if (!flat || !accel->meshes || !accel->instances)
         return WHIT_ERROR_MEMORY;
-    if (scene->instance_count >= FLAT_INSTANCES_MAX) {
-        log_error(&accel->log, "%s: %u instances are too many", scene->name, scene->instance_count);
-        return WHIT_ERROR_INPUT;
-    }
+    if (scene->instance_count >= FLAT_INSTANCES_MAX)
+        return log_failure(&accel->log, WHIT_ERROR_INPUT, "%s: %u instances are too many",
+                           scene->name, scene->instance_count);
     size_t ends = (size_t)scene->instance_count + 1;
     flat->meshes = array_alloc(scene->mesh_count, sizeof *flat->meshes);
     flat->materials = array_alloc_zeroed(scene->material_count, sizeof *flat->materials);
@@ -231,9 +230,9 @@ static whit_result refuse_range(const struct flattening *f)
             continue;
         uint32_t instance = accel->world->spans[i].instance;
         const char *name = accel->scene->instances[instance].name;
-        log_error(&accel->log, "%s: instance %u `%s`: its triangles are out of range at %g s",
-                  accel->scene->name, instance, text_token(name).text, f->pose->time_s);
-        return WHIT_ERROR_INPUT;
+        return log_failure(&accel->log, WHIT_ERROR_INPUT,
+                           "%s: instance %u `%s`: its triangles are out of range at %g s",
+                           accel->scene->name, instance, text_token(name).text, f->pose->time_s);
     }
     return WHIT_OK;
 }
@@ -245,20 +244,19 @@ static whit_result refuse_spheres(const struct flattening *f)
         if (!mesh_of(f, i)->sphere_count || accel_flat_keeps_spheres(&f->pose->instances[i]))
             continue;
         const char *name = accel->scene->instances[i].name;
-        log_error(&accel->log,
-                  "%s: instance %u `%s`: spheres that are turned, mirrored or stretched need "
-                  "instances",
-                  accel->scene->name, i, text_token(name).text);
-        return WHIT_ERROR_INPUT;
+        return log_failure(
+            &accel->log, WHIT_ERROR_INPUT,
+            "%s: instance %u `%s`: spheres that are turned, mirrored or stretched need "
+            "instances",
+            accel->scene->name, i, text_token(name).text);
     }
     return WHIT_OK;
 }
 
 static whit_result no_memory(const struct accel *accel)
 {
-    log_error(&accel->log, "%s: out of memory for one tree over all its triangles",
-              accel->scene->name);
-    return WHIT_ERROR_MEMORY;
+    return log_failure(&accel->log, WHIT_ERROR_MEMORY,
+                       "%s: out of memory for one tree over all its triangles", accel->scene->name);
 }
 
 static whit_result world_build(struct flattening *f)

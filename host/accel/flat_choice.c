@@ -51,10 +51,8 @@ static bool is_one_ball(const struct scene_mesh *mesh)
 static whit_result find_repeated(const struct scene *scene, bool *each_once)
 {
     uint8_t *seen = array_alloc_zeroed(scene->mesh_count, 1);
-    if (!seen) {
-        log_error(&scene->log, "%s: out of memory", scene->name);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!seen)
+        return log_failure(&scene->log, WHIT_ERROR_MEMORY, "%s: out of memory", scene->name);
     *each_once = true;
     for (uint32_t i = 0; *each_once && i < scene->instance_count; ++i)
         *each_once = seen[scene->instances[i].mesh]++ == 0 ||

@@ -224,9 +224,9 @@ static whit_result instances_fill(const struct accel *accel, const struct scene_
         if (i == UINT32_MAX)
             continue;
         const char *name = accel->scene->instances[i].name;
-        log_error(&accel->log, "%s: instance %u `%s`: its matrix has no inverse in range at %g s",
-                  accel->scene->name, i, text_token(name).text, pose->time_s);
-        return WHIT_ERROR_INPUT;
+        return log_failure(&accel->log, WHIT_ERROR_INPUT,
+                           "%s: instance %u `%s`: its matrix has no inverse in range at %g s",
+                           accel->scene->name, i, text_token(name).text, pose->time_s);
     }
     return WHIT_OK;
 }
@@ -343,17 +343,15 @@ whit_result accel_pose(struct accel *accel, const struct scene_pose *pose)
 {
     double begin_ms = clock_ms();
     uint32_t count = accel->instance_count;
-    if (pose->instance_count != count) {
-        log_error(&accel->log, "%s: a pose of %u instances for a scene of %u", accel->scene->name,
-                  pose->instance_count, count);
-        return WHIT_ERROR_USAGE;
-    }
+    if (pose->instance_count != count)
+        return log_failure(&accel->log, WHIT_ERROR_USAGE,
+                           "%s: a pose of %u instances for a scene of %u", accel->scene->name,
+                           pose->instance_count, count);
     if (!accel->posing)
         accel->posing = posing_create(count);
-    if (!accel->posing) {
-        log_error(&accel->log, "%s: out of memory for %u instances", accel->scene->name, count);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!accel->posing)
+        return log_failure(&accel->log, WHIT_ERROR_MEMORY, "%s: out of memory for %u instances",
+                           accel->scene->name, count);
     accel->posed_s = NAN;
     whit_result result = accel->flat ? pose_flat(accel, pose) : pose_instances(accel, pose);
     if (result == WHIT_OK)

@@ -384,10 +384,9 @@ static whit_result parts_check(const struct view *view, const struct accel *acce
     if (!view->split)
         return WHIT_OK;
     struct seen *seen = array_alloc_zeroed(view->primitive_count, sizeof *seen);
-    if (!seen) {
-        log_error(view->log, "%s: out of memory for validation", view->name);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!seen)
+        return log_failure(view->log, WHIT_ERROR_MEMORY, "%s: out of memory for validation",
+                           view->name);
     bool same = true;
     for (uint32_t i = 0; same && i < view->node_count; ++i) {
         for (uint32_t k = 0; same && i != 1 && k < bvh_count(&nodes[i]); ++k) {
@@ -616,10 +615,9 @@ static bool instances_number(const struct accel *accel, uint32_t *dense, uint32_
 static whit_result validate_instances(const struct accel *accel)
 {
     uint32_t *dense = array_alloc(accel->instance_count, sizeof *dense);
-    if (!dense) {
-        log_error(&accel->log, "instances: out of memory for validation");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!dense)
+        return log_failure(&accel->log, WHIT_ERROR_MEMORY,
+                           "instances: out of memory for validation");
     struct instance_user user = {accel, dense};
     struct view view = {
         .log = &accel->log,
@@ -654,10 +652,9 @@ whit_result accel_validate(const struct accel *accel)
         if (accel->meshes[i].depth > deepest)
             deepest = accel->meshes[i].depth;
     }
-    if (accel->mesh_depth != deepest) {
-        log_error(&accel->log, "the stated depth of the meshes is %u, but it is %u",
-                  accel->mesh_depth, deepest);
-        return WHIT_ERROR_FAILED;
-    }
+    if (accel->mesh_depth != deepest)
+        return log_failure(&accel->log, WHIT_ERROR_FAILED,
+                           "the stated depth of the meshes is %u, but it is %u", accel->mesh_depth,
+                           deepest);
     return validate_instances(accel);
 }

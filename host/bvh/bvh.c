@@ -57,11 +57,10 @@ whit_result bvh_build(const whit_log *log, const struct bvh_box *boxes, uint32_t
     whit_result result = bvh_check(log, &resolved);
     if (result != WHIT_OK || count == 0)
         return result;
-    if (count > BVH_FIRST_MASK / 2) {
-        log_error(log, "tree: %u primitives are more than the %u that a node can address", count,
-                  BVH_FIRST_MASK / 2);
-        return WHIT_ERROR_INPUT;
-    }
+    if (count > BVH_FIRST_MASK / 2)
+        return log_failure(log, WHIT_ERROR_INPUT,
+                           "tree: %u primitives are more than the %u that a node can address",
+                           count, BVH_FIRST_MASK / 2);
     result = builders[resolved.build](log, boxes, count, triangles, &resolved, out);
     if (result == WHIT_OK)
         bvh_complete(out, resolved.threads);

@@ -130,10 +130,9 @@ whit_result spatial_build(const whit_log *log, const struct bvh_box *boxes, uint
                           const struct bvh_triangles *triangles, const whit_accel_params *resolved,
                           struct bvh *out)
 {
-    if (!triangles) {
-        log_error(log, "tree over %u boxes: spatial splits need the triangles in them", count);
-        return WHIT_ERROR_USAGE;
-    }
+    if (!triangles)
+        return log_failure(log, WHIT_ERROR_USAGE,
+                           "tree over %u boxes: spatial splits need the triangles in them", count);
     struct spatial spatial = {.triangles = triangles};
     struct builder builder = {
         .params = resolved, .context = &spatial, .split = split, .halve = split_median};

@@ -259,8 +259,7 @@ static whit_result sweep_prepare(const whit_log *log, struct sweep *sweep, uint3
         threads_for(count < THREADED_MIN ? 1 : thread_count, 3, sort_axis, &sorting);
     if (allocated && !sorting.failed[0] && !sorting.failed[1] && !sorting.failed[2])
         return WHIT_OK;
-    log_error(log, "tree over %u boxes: out of memory", count);
-    return WHIT_ERROR_MEMORY;
+    return log_failure(log, WHIT_ERROR_MEMORY, "tree over %u boxes: out of memory", count);
 }
 
 whit_result sweep_build(const whit_log *log, const struct bvh_box *boxes, uint32_t count,

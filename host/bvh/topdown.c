@@ -236,8 +236,7 @@ static whit_result grow_alloc(const whit_log *log, struct build *build, struct b
     out->order = array_alloc(room, sizeof *out->order);
     if (build->output.slots && build->queue.ranges && out->nodes && out->order)
         return WHIT_OK;
-    log_error(log, "tree over %u boxes: out of memory", build->count);
-    return WHIT_ERROR_MEMORY;
+    return log_failure(log, WHIT_ERROR_MEMORY, "tree over %u boxes: out of memory", build->count);
 }
 
 whit_result topdown_grow(const whit_log *log, const struct builder *builder,

@@ -325,8 +325,7 @@ whit_result hard_scene_of_mesh(const whit_log *log, const char *name, struct sce
         instance.local = *place;
     if (!scene) {
         scene_mesh_finish(mesh);
-        log_error(log, "out of memory");
-        return WHIT_ERROR_MEMORY;
+        return log_failure(log, WHIT_ERROR_MEMORY, "out of memory");
     }
     whit_result result = WHIT_OK;
     instance.mesh = scene_add_mesh(scene, *mesh);
@@ -429,10 +428,8 @@ whit_result hard_scene_borrow(const whit_log *log, const struct scene *scene, do
 {
     *out = (struct hard_scene){
         .scene = scene, .flatten = flatten, .rays = HARD_AROUND, .truth = HARD_ORACLE};
-    if (scene->triangle_total == 0) {
-        log_error(log, "%s: no triangles to shoot at", scene->name);
-        return WHIT_ERROR_INPUT;
-    }
+    if (scene->triangle_total == 0)
+        return log_failure(log, WHIT_ERROR_INPUT, "%s: no triangles to shoot at", scene->name);
     return take_scene(log, time_s, out);
 }
 
@@ -472,8 +469,8 @@ static whit_result gather(const whit_log *log, const struct hard_scene *given,
     }
     if (!mesh->positions || !mesh->indices) {
         scene_mesh_finish(mesh);
-        log_error(log, "%s: out of memory for all its triangles as one mesh", scene->name);
-        return WHIT_ERROR_MEMORY;
+        return log_failure(log, WHIT_ERROR_MEMORY,
+                           "%s: out of memory for all its triangles as one mesh", scene->name);
     }
     for (uint32_t i = 0; i < scene->instance_count; ++i) {
         const struct scene_mesh *from = &scene->meshes[scene->instances[i].mesh];

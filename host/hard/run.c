@@ -47,18 +47,16 @@ static whit_result allocate(struct hard_run *run)
     run->report = calloc(1, sizeof *run->report);
     if (run->rays && run->plain && run->exact && run->hits && run->twin && run->report)
         return WHIT_OK;
-    log_error(&run->log, "out of memory for %llu rays", (unsigned long long)count);
-    return WHIT_ERROR_MEMORY;
+    return log_failure(&run->log, WHIT_ERROR_MEMORY, "out of memory for %llu rays",
+                       (unsigned long long)count);
 }
 
 static whit_result still_wanted(const struct hard_run *run)
 {
     if (run->params->cancel && *run->params->cancel)
         return WHIT_ERROR_CANCELLED;
-    if (run->deadline_ms > 0.0 && clock_ms() > run->deadline_ms) {
-        log_error(&run->log, "the time limit has passed");
-        return WHIT_ERROR_TIME_LIMIT;
-    }
+    if (run->deadline_ms > 0.0 && clock_ms() > run->deadline_ms)
+        return log_failure(&run->log, WHIT_ERROR_TIME_LIMIT, "the time limit has passed");
     return WHIT_OK;
 }
 
@@ -156,8 +154,7 @@ static whit_result keep_row(struct hard_run *run, whit_hard_row *row)
     run->report->unanswered += row->unanswered;
     if (ARRAY_PUSH(run->report->rows, run->report->row_count, run->row_capacity, *row))
         return WHIT_OK;
-    log_error(&run->log, "out of memory");
-    return WHIT_ERROR_MEMORY;
+    return log_failure(&run->log, WHIT_ERROR_MEMORY, "out of memory");
 }
 
 static void make_rays(struct hard_run *run, const struct hard_scene *hard, enum hard_rays kind,
@@ -291,15 +288,11 @@ static whit_result run_scene(struct hard_run *run, const struct scene *scene, bo
 
 static whit_result check_params(const struct hard_run *run)
 {
-    if (run->ray_count < RAYS_HASHED || run->ray_count > UINT32_MAX / 2) {
-        log_error(&run->log, "%llu rays: %d to %u are possible", (unsigned long long)run->ray_count,
-                  RAYS_HASHED, UINT32_MAX / 2);
-        return WHIT_ERROR_USAGE;
-    }
-    if (run->levels >> LEVELS) {
-        log_error(&run->log, "levels %#x: there are three", run->levels);
-        return WHIT_ERROR_USAGE;
-    }
+    if (run->ray_count < RAYS_HASHED || run->ray_count > UINT32_MAX / 2)
+        return log_failure(&run->log, WHIT_ERROR_USAGE, "%llu rays: %d to %u are possible",
+                           (unsigned long long)run->ray_count, RAYS_HASHED, UINT32_MAX / 2);
+    if (run->levels >> LEVELS)
+        return log_failure(&run->log, WHIT_ERROR_USAGE, "levels %#x: there are three", run->levels);
     return WHIT_OK;
 }
 

@@ -42,10 +42,9 @@ static whit_result prepare(struct view *view)
     view->plain = array_alloc(count, sizeof *view->plain);
     view->exact = array_alloc(count, sizeof *view->exact);
     view->hits = array_alloc(count, sizeof *view->hits);
-    if (!view->rays || !view->plain || !view->exact || !view->hits) {
-        log_error(&view->log, "out of memory for %u x %u rays", view->width, view->height);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!view->rays || !view->plain || !view->exact || !view->hits)
+        return log_failure(&view->log, WHIT_ERROR_MEMORY, "out of memory for %u x %u rays",
+                           view->width, view->height);
     whit_result result = camera_all_rays(&view->log, &view->hard.pose, &view->params->camera,
                                          view->width, view->height, view->plain);
     for (size_t i = 0; result == WHIT_OK && i < count; ++i)

@@ -37,10 +37,11 @@ static bool same_kind(const struct image *a, const struct image *b)
 
 static whit_result refuse(const whit_log *log, const struct image *a, const struct image *b)
 {
-    log_error(log, "the pictures cannot be compared: %u x %u with %u %s against %u x %u with %u %s",
-              a->width, a->height, a->channels, a->words ? "integers" : "floats", b->width,
-              b->height, b->channels, b->words ? "integers" : "floats");
-    return WHIT_ERROR_INPUT;
+    return log_failure(
+        log, WHIT_ERROR_INPUT,
+        "the pictures cannot be compared: %u x %u with %u %s against %u x %u with %u %s", a->width,
+        a->height, a->channels, a->words ? "integers" : "floats", b->width, b->height, b->channels,
+        b->words ? "integers" : "floats");
 }
 
 static bool is_finite(const float rgba[4])
@@ -143,10 +144,9 @@ whit_result image_subtract(const whit_log *log, const struct image *a, const str
     *out = (struct image){0};
     if (!same_kind(a, b))
         return refuse(log, a, b);
-    if (!a->pixels) {
-        log_error(log, "hit identities have no difference but that they are other ones");
-        return WHIT_ERROR_USAGE;
-    }
+    if (!a->pixels)
+        return log_failure(log, WHIT_ERROR_USAGE,
+                           "hit identities have no difference but that they are other ones");
     whit_result result = image_init_logged(log, out, a->width, a->height, 3, false);
     if (result != WHIT_OK)
         return result;

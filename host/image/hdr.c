@@ -148,24 +148,20 @@ whit_result hdr_load(const struct image_source *source, struct image *image)
 {
     struct reader reader = {.at = source->data, .end = source->data + source->size_bytes};
     struct layout layout;
-    if (!read_header(&reader) || !read_layout(&reader, &layout)) {
-        log_error(source->log, "%s: the HDR header is damaged, or of a kind not supported",
-                  source->path);
-        return WHIT_ERROR_INPUT;
-    }
+    if (!read_header(&reader) || !read_layout(&reader, &layout))
+        return log_failure(source->log, WHIT_ERROR_INPUT,
+                           "%s: the HDR header is damaged, or of a kind not supported",
+                           source->path);
     /* A row has at least 4 bytes; checked, so that a short file does not allocate much memory. */
-    if (layout.height > (uint64_t)(reader.end - reader.at) / 4) {
-        log_error(source->log, "%s: cut short", source->path);
-        return WHIT_ERROR_INPUT;
-    }
+    if (layout.height > (uint64_t)(reader.end - reader.at) / 4)
+        return log_failure(source->log, WHIT_ERROR_INPUT, "%s: cut short", source->path);
     whit_result result = image_init_loaded(source, image, layout.width, layout.height, 3, false);
     if (result != WHIT_OK)
         return result;
     uint8_t *row = array_alloc(image->width, 4);
-    if (!row) {
-        log_error(source->log, "%s: no memory for a row of pixels", source->path);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!row)
+        return log_failure(source->log, WHIT_ERROR_MEMORY, "%s: no memory for a row of pixels",
+                           source->path);
     for (uint32_t y = 0; y < image->height && result == WHIT_OK; ++y) {
         if (read_row(&reader, row, image->width)) {
             store_row(row, &layout, y, image);

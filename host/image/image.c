@@ -56,16 +56,12 @@ void image_finish(struct image *image)
 whit_result image_init_loaded(const struct image_source *source, struct image *image,
                               uint64_t width, uint64_t height, uint32_t channels, bool integers)
 {
-    if (width == 0 || height == 0) {
-        log_error(source->log, "%s: the picture is empty", source->path);
-        return WHIT_ERROR_INPUT;
-    }
+    if (width == 0 || height == 0)
+        return log_failure(source->log, WHIT_ERROR_INPUT, "%s: the picture is empty", source->path);
     if (width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX ||
-        width * height > IMAGE_BYTES_MAX / (sizeof(float) * channels)) {
-        log_error(source->log, "%s: %llu x %llu pixels are too many", source->path,
-                  (unsigned long long)width, (unsigned long long)height);
-        return WHIT_ERROR_INPUT;
-    }
+        width * height > IMAGE_BYTES_MAX / (sizeof(float) * channels))
+        return log_failure(source->log, WHIT_ERROR_INPUT, "%s: %llu x %llu pixels are too many",
+                           source->path, (unsigned long long)width, (unsigned long long)height);
     whit_result result = image_init(image, (uint32_t)width, (uint32_t)height, channels, integers);
     if (result != WHIT_OK)
         log_error(source->log, "%s: no memory for %llu x %llu pixels", source->path,
@@ -111,19 +107,14 @@ whit_result image_check_savable(const whit_log *log, const struct image *image, 
 {
     bool integers = image->words != NULL;
     if (!image->pixels == !image->words || image->width == 0 || image->height == 0 ||
-        image->channels == 0 || image->channels > 4 || (!integers && image->channels == 2)) {
-        log_error(log, "%s: not a picture that can be saved", path);
-        return WHIT_ERROR_USAGE;
-    }
-    if (image->width > IMAGE_SIDE_MAX || image->height > IMAGE_SIDE_MAX) {
-        log_error(log, "%s: %u x %u pixels are too many", path, image->width, image->height);
-        return WHIT_ERROR_USAGE;
-    }
-    if (!image_format_known(path, integers)) {
-        log_error(log, "%s: unknown picture format; use %s", path,
-                  integers ? ".exr, which keeps integers" : ".png, .exr or .pfm");
-        return WHIT_ERROR_USAGE;
-    }
+        image->channels == 0 || image->channels > 4 || (!integers && image->channels == 2))
+        return log_failure(log, WHIT_ERROR_USAGE, "%s: not a picture that can be saved", path);
+    if (image->width > IMAGE_SIDE_MAX || image->height > IMAGE_SIDE_MAX)
+        return log_failure(log, WHIT_ERROR_USAGE, "%s: %u x %u pixels are too many", path,
+                           image->width, image->height);
+    if (!image_format_known(path, integers))
+        return log_failure(log, WHIT_ERROR_USAGE, "%s: unknown picture format; use %s", path,
+                           integers ? ".exr, which keeps integers" : ".png, .exr or .pfm");
     return WHIT_OK;
 }
 
@@ -166,13 +157,12 @@ static whit_result check_layers(const whit_log *log, const struct image *image,
     for (uint32_t i = 0; fit && i < count; ++i) {
         const char *name = layers[i].name;
         size_t length = strcspn(name, "."); /* a dot stands before the channel */
-        if (length == 0 || length > LAYER_NAME_MAX || name[length] || !is_new_layer(layers, i)) {
-            log_error(log,
-                      "%s: a layer `%s`: names have 1 to %d bytes and no dots, and differ from one "
-                      "another",
-                      path, name, LAYER_NAME_MAX);
-            return WHIT_ERROR_USAGE;
-        }
+        if (length == 0 || length > LAYER_NAME_MAX || name[length] || !is_new_layer(layers, i))
+            return log_failure(
+                log, WHIT_ERROR_USAGE,
+                "%s: a layer `%s`: names have 1 to %d bytes and no dots, and differ from one "
+                "another",
+                path, name, LAYER_NAME_MAX);
     }
     for (uint32_t i = 0; fit && i < count; ++i) {
         const struct image *layer = layers[i].image;
@@ -181,9 +171,9 @@ static whit_result check_layers(const whit_log *log, const struct image *image,
     }
     if (fit)
         return WHIT_OK;
-    log_error(log, "%s: an .exr alone keeps images beside another one, up to %d of its size", path,
-              IMAGE_LAYERS_MAX);
-    return WHIT_ERROR_USAGE;
+    return log_failure(log, WHIT_ERROR_USAGE,
+                       "%s: an .exr alone keeps images beside another one, up to %d of its size",
+                       path, IMAGE_LAYERS_MAX);
 }
 
 /* The keywords of PNG: Latin-1 without spaces that its readers drop. */
@@ -215,21 +205,20 @@ whit_result image_check_texts(const whit_log *log, const char *path, const whit_
 {
     bool exr = image_format_of(path) == IMAGE_EXR;
     for (uint32_t i = 0; texts && i < count; ++i) {
-        if (exr && is_reserved(texts[i].key)) {
-            log_error(log, "%s: a text `%s`: .exr has this name for something else", path,
-                      texts[i].key);
-            return WHIT_ERROR_USAGE;
-        }
+        if (exr && is_reserved(texts[i].key))
+            return log_failure(log, WHIT_ERROR_USAGE,
+                               "%s: a text `%s`: .exr has this name for something else", path,
+                               texts[i].key);
         bool good = is_key(texts[i].key);
         for (uint32_t k = 0; good && k < i; ++k)
             good = strcmp(texts[k].key, texts[i].key) != 0;
         if (good)
             continue;
-        log_error(log,
-                  "%s: a text `%s`: keys have 1 to %d printable characters, no spaces at their "
-                  "ends or side by side, and differ from one another",
-                  path, texts[i].key, KEY_MAX);
-        return WHIT_ERROR_USAGE;
+        return log_failure(
+            log, WHIT_ERROR_USAGE,
+            "%s: a text `%s`: keys have 1 to %d printable characters, no spaces at their "
+            "ends or side by side, and differ from one another",
+            path, texts[i].key, KEY_MAX);
     }
     return WHIT_OK;
 }

@@ -43,10 +43,9 @@ whit_result pfm_put_rows(const struct image_target *target, const struct image *
     uint32_t colours = kept_channels(image);
     size_t row_bytes = (size_t)image->width * colours * 4;
     uint8_t *row = array_alloc(row_bytes, 1);
-    if (!row) {
-        log_error(target->log, "%s: no memory for a row of pixels", target->path);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!row)
+        return log_failure(target->log, WHIT_ERROR_MEMORY, "%s: no memory for a row of pixels",
+                           target->path);
     for (uint32_t y = image->height; y-- > 0;) {
         const float *pixel = image->pixels + (size_t)y * image->width * image->channels;
         for (uint32_t x = 0; x < image->width; ++x, pixel += image->channels) {
@@ -109,18 +108,16 @@ whit_result pfm_load(const struct image_source *source, struct image *image)
     uint64_t size[2];
     double scale;
     uint32_t channels = source->data[1] == 'F' ? 3 : 1;
-    if (!parse_header(source, &at, size, &scale)) {
-        log_error(source->log, "%s: the PFM header is damaged", source->path);
-        return WHIT_ERROR_INPUT;
-    }
+    if (!parse_header(source, &at, size, &scale))
+        return log_failure(source->log, WHIT_ERROR_INPUT, "%s: the PFM header is damaged",
+                           source->path);
     /* Checked before memory is allocated. Sizes that overflow here are refused there. */
     uint64_t needed_bytes = size[0] * size[1] * channels * 4;
     bool countable = size[0] <= IMAGE_SIDE_MAX && size[1] <= IMAGE_SIDE_MAX;
-    if (countable && source->size_bytes - at < needed_bytes) {
-        log_error(source->log, "%s: cut short: %zu of %llu bytes of pixels", source->path,
-                  source->size_bytes - at, (unsigned long long)needed_bytes);
-        return WHIT_ERROR_INPUT;
-    }
+    if (countable && source->size_bytes - at < needed_bytes)
+        return log_failure(source->log, WHIT_ERROR_INPUT,
+                           "%s: cut short: %zu of %llu bytes of pixels", source->path,
+                           source->size_bytes - at, (unsigned long long)needed_bytes);
     whit_result result = image_init_loaded(source, image, size[0], size[1], channels, false);
     if (result != WHIT_OK)
         return result;

@@ -382,10 +382,9 @@ static whit_result load(const struct image_source *source, struct image *image,
                         struct text_list *list)
 {
     struct job *job = calloc(1, sizeof *job);
-    if (!job) {
-        log_error(source->log, "%s: no memory to read a PNG", source->path);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!job)
+        return log_failure(source->log, WHIT_ERROR_MEMORY, "%s: no memory to read a PNG",
+                           source->path);
     if (begin_read(job, source) && setjmp(png_jmpbuf(job->png)) == 0) {
         if (image)
             read_picture(job, image);

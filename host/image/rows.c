@@ -20,9 +20,8 @@ struct image_rows {
 
 static whit_result fail(struct image_rows *rows)
 {
-    log_error(rows->target.log, "%s: cannot be written in strips: %s", rows->target.path,
-              strerror(errno));
-    return WHIT_ERROR_OUTPUT;
+    return log_failure(rows->target.log, WHIT_ERROR_OUTPUT, "%s: cannot be written in strips: %s",
+                       rows->target.path, strerror(errno));
 }
 
 /* Begins the writer of the format. `channels`: of a PNG. */
@@ -44,10 +43,8 @@ static whit_result open_rows(const struct image_target *target, const struct ima
 {
     struct image_rows *rows = calloc(1, sizeof *rows);
     *out = NULL;
-    if (!rows) {
-        log_error(target->log, "%s: out of memory", target->path);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!rows)
+        return log_failure(target->log, WHIT_ERROR_MEMORY, "%s: out of memory", target->path);
     whit_result result = file_write_begin(target->log, target->path, &rows->file);
     if (result != WHIT_OK) {
         free(rows);

@@ -52,11 +52,10 @@ whit_result cut_check_stl(struct scene *scene, const char *path, uint8_t *data, 
     }
     uint64_t room = (*size_bytes - STL_HEADER_BYTES) / STL_TRIANGLE_BYTES;
     uint64_t used = STL_HEADER_BYTES + (uint64_t)count * STL_TRIANGLE_BYTES;
-    if (count > room || (count == 0 && room)) {
-        log_error(&scene->log, "%s: it says that it has %u triangles, and has room for %llu", path,
-                  count, (unsigned long long)room);
-        return WHIT_ERROR_INPUT;
-    }
+    if (count > room || (count == 0 && room))
+        return log_failure(&scene->log, WHIT_ERROR_INPUT,
+                           "%s: it says that it has %u triangles, and has room for %llu", path,
+                           count, (unsigned long long)room);
     if (used < *size_bytes)
         scene_note(scene, SCENE_NOTE_WARNING, "%s: %llu bytes behind its triangles are not read",
                    path_name(path), (unsigned long long)(*size_bytes - used));
@@ -114,10 +113,8 @@ static const char *skip_corners(const char *at, unsigned long long vertex_count,
 
 static whit_result check_off(struct scene *scene, const char *path, const char *text)
 {
-    if (strncmp(text, "OFF BINARY", 10) == 0) {
-        log_error(&scene->log, "%s: a binary OFF is not read", path);
-        return WHIT_ERROR_INPUT;
-    }
+    if (strncmp(text, "OFF BINARY", 10) == 0)
+        return log_failure(&scene->log, WHIT_ERROR_INPUT, "%s: a binary OFF is not read", path);
     static const char *const names[] = {"vertex", "face"};
     unsigned long long counts[2], wide = 0, coloured = 0;
     const char *at = text + strcspn(text, " \t\n");
@@ -134,21 +131,19 @@ static whit_result check_off(struct scene *scene, const char *path, const char *
             at = next_line(at);
             bool bad = false;
             const char *end = what == 1 ? skip_corners(at, counts[0], &corners, &bad) : at;
-            if (!*at || !end || bad) {
-                log_error(&scene->log, "%s: %s %llu of %llu %s", path, names[what], i + 1,
-                          counts[what],
-                          bad ? "names a vertex that is not there" : "is cut short or missing");
-                return WHIT_ERROR_INPUT;
-            }
+            if (!*at || !end || bad)
+                return log_failure(&scene->log, WHIT_ERROR_INPUT, "%s: %s %llu of %llu %s", path,
+                                   names[what], i + 1, counts[what],
+                                   bad ? "names a vertex that is not there"
+                                       : "is cut short or missing");
             wide += corners > OFF_CORNERS_MAX;
             coloured += what == 1 && *end != '\n';
         }
     }
-    if (wide && wide == counts[1]) {
-        log_error(&scene->log, "%s: all its faces have more than %d corners, which are not read",
-                  path, OFF_CORNERS_MAX);
-        return WHIT_ERROR_INPUT;
-    }
+    if (wide && wide == counts[1])
+        return log_failure(&scene->log, WHIT_ERROR_INPUT,
+                           "%s: all its faces have more than %d corners, which are not read", path,
+                           OFF_CORNERS_MAX);
     if (wide)
         scene_note(scene, SCENE_NOTE_WARNING, "%s: %llu faces of more than %d corners are not read",
                    path_name(path), wide, OFF_CORNERS_MAX);

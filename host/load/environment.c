@@ -52,10 +52,8 @@ static whit_result linearize(const whit_log *log, const char *path, struct pictu
         table[i] = image_linear_from_srgb((float)i / 255.0f);
     size_t pixels = (size_t)picture->width * picture->height;
     picture->rgb = array_alloc(pixels, 3 * sizeof(float));
-    if (!picture->rgb) {
-        log_error(log, "%s: out of memory", path);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!picture->rgb)
+        return log_failure(log, WHIT_ERROR_MEMORY, "%s: out of memory", path);
     for (size_t i = 0; i < pixels; ++i) {
         for (size_t k = 0; k < 3; ++k)
             picture->rgb[3 * i + k] = table[picture->rgba[4 * i + k]];

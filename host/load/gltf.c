@@ -82,10 +82,9 @@ static whit_result read_json(struct gltf *gltf)
     if (!split(gltf, &json, &size))
         return WHIT_ERROR_INPUT;
     gltf->root = json_loadb((const char *)json, size, 0, &error);
-    if (!gltf->root) {
-        log_error(&gltf->scene->log, "%s:%d:%d: %s", path, error.line, error.column, error.text);
-        return WHIT_ERROR_INPUT;
-    }
+    if (!gltf->root)
+        return log_failure(&gltf->scene->log, WHIT_ERROR_INPUT, "%s:%d:%d: %s", path, error.line,
+                           error.column, error.text);
     if (json_is_object(gltf->root))
         return WHIT_OK;
     fail_file(gltf, "the JSON is not an object");

@@ -366,12 +366,11 @@ static whit_result note_dropped(const struct geometry *geometry)
 {
     const char *name = path_name(geometry->gltf->request->path);
     struct scene *scene = geometry->gltf->scene;
-    if (geometry->lines_and_points && !geometry->drawn) {
-        log_error(&scene->log,
-                  "%s: there are no triangles in it (%llu primitives of points or lines)",
-                  geometry->gltf->request->path, (unsigned long long)geometry->lines_and_points);
-        return WHIT_ERROR_INPUT;
-    }
+    if (geometry->lines_and_points && !geometry->drawn)
+        return log_failure(&scene->log, WHIT_ERROR_INPUT,
+                           "%s: there are no triangles in it (%llu primitives of points or lines)",
+                           geometry->gltf->request->path,
+                           (unsigned long long)geometry->lines_and_points);
     if (geometry->lines_and_points)
         scene_note(scene, SCENE_NOTE_INFO, "%s: %llu primitives of points or lines are not drawn",
                    name, (unsigned long long)geometry->lines_and_points);

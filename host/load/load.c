@@ -118,14 +118,11 @@ static void tell_refused(const struct roots *roots, const whit_load_params *para
 static whit_result check_path(const whit_log *log, const char *path)
 {
     struct stat info;
-    if (stat(path, &info) != 0) {
-        log_error(log, "%s: %s", path, reach_words(REACH_MISSING));
-        return WHIT_ERROR_INPUT;
-    }
-    if (S_ISDIR(info.st_mode)) {
-        log_error(log, "%s: this is a folder, not a scene or a model", path);
-        return WHIT_ERROR_INPUT;
-    }
+    if (stat(path, &info) != 0)
+        return log_failure(log, WHIT_ERROR_INPUT, "%s: %s", path, reach_words(REACH_MISSING));
+    if (S_ISDIR(info.st_mode))
+        return log_failure(log, WHIT_ERROR_INPUT, "%s: this is a folder, not a scene or a model",
+                           path);
     return WHIT_OK;
 }
 
@@ -148,31 +145,27 @@ static whit_result name_input(const whit_log *log, char name[INPUT_NAME_BYTES])
 
 whit_result load_check(const whit_log *log, const char *path, const whit_load_params *params)
 {
-    if (!path) {
-        log_error(log, "there is no path of a file to load");
-        return WHIT_ERROR_USAGE;
-    }
+    if (!path)
+        return log_failure(log, WHIT_ERROR_USAGE, "there is no path of a file to load");
     if (!params)
         return WHIT_OK;
-    if ((uint32_t)params->up > WHIT_UP_AUTO || (uint32_t)params->lights > WHIT_LIGHTS_KEY) {
-        log_error(log, "%s: up or lights: a value of an enumeration that there is none of", path);
-        return WHIT_ERROR_USAGE;
-    }
+    if ((uint32_t)params->up > WHIT_UP_AUTO || (uint32_t)params->lights > WHIT_LIGHTS_KEY)
+        return log_failure(log, WHIT_ERROR_USAGE,
+                           "%s: up or lights: a value of an enumeration that there is none of",
+                           path);
     if (params->import_limit_s >= 0.0 && params->time_limit_s >= 0.0)
         return WHIT_OK;
-    log_error(log, "%s: limits of %g s and %g s for importers: must not be below 0", path,
-              params->import_limit_s, params->time_limit_s);
-    return WHIT_ERROR_USAGE;
+    return log_failure(log, WHIT_ERROR_USAGE,
+                       "%s: limits of %g s and %g s for importers: must not be below 0", path,
+                       params->import_limit_s, params->time_limit_s);
 }
 
 static whit_result load_named(const whit_log *log, const char *path, bool piped,
                               const whit_load_params *params, struct scene **out)
 {
     struct scene *scene = scene_create(log, path);
-    if (!scene) {
-        log_error(log, "%s: out of memory", path);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!scene)
+        return log_failure(log, WHIT_ERROR_MEMORY, "%s: out of memory", path);
     scene->memory_limit = params && params->memory_limit_bytes ? params->memory_limit_bytes
                                                                : scene_default_memory_limit();
     whit_result result =

@@ -362,7 +362,7 @@ whit_result load_model(struct scene *scene, const char *path, uint32_t parent, b
         return load_kind(scene, &request, kinds[kind].kind);
     char extension[16];
     path_extension(path, extension, sizeof extension);
-    log_error(&scene->log, "%s: unknown kind of model `.%s` (known: " LOAD_MODELS ")", path,
-              text_token(extension).text);
-    return WHIT_ERROR_INPUT;
+    return log_failure(&scene->log, WHIT_ERROR_INPUT,
+                       "%s: unknown kind of model `.%s` (known: " LOAD_MODELS ")", path,
+                       text_token(extension).text);
 }

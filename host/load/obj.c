@@ -268,11 +268,10 @@ whit_result obj_check_faces(struct scene *scene, const char *path, const char *t
             return WHIT_ERROR_INPUT;
         uint32_t words =
             kind ? 0 : count_words((const uint8_t *)at, (const uint8_t *)at + strcspn(at, "\n"));
-        if (words > 7) {
-            log_error(&scene->log, "%s:%u: a vertex has %u numbers, at most 6 are possible", path,
-                      check.line, words - 1);
-            return WHIT_ERROR_INPUT;
-        }
+        if (words > 7)
+            return log_failure(&scene->log, WHIT_ERROR_INPUT,
+                               "%s:%u: a vertex has %u numbers, at most 6 are possible", path,
+                               check.line, words - 1);
         curves += strncmp(at, "curv", 4) == 0 || strncmp(at, "surf", 4) == 0;
         if (kind >= 0 && kind < NAMED_KINDS)
             check.above[kind]++;

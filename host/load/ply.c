@@ -151,24 +151,23 @@ static whit_result check_header(const whit_log *log, const char *path, const str
                                 size_t size_bytes)
 {
     size_t behind = header->end < size_bytes ? size_bytes - header->end : 0;
-    if (!header->has_end) {
-        log_error(log, "%s:%u: the file ends within its header", path, header->line_count + 1);
-        return WHIT_ERROR_INPUT;
-    }
+    if (!header->has_end)
+        return log_failure(log, WHIT_ERROR_INPUT, "%s:%u: the file ends within its header", path,
+                           header->line_count + 1);
     for (uint32_t i = 0; i < header->element_count; i++) {
         const struct element *element = &header->elements[i];
         if (element->property_count == 0 || element->count <= behind) /* others have no data */
             continue;
-        log_error(log, "%s:%u: %llu elements, but only %zu bytes behind the header", path,
-                  element->line, element->count, behind);
-        return WHIT_ERROR_INPUT;
+        return log_failure(log, WHIT_ERROR_INPUT,
+                           "%s:%u: %llu elements, but only %zu bytes behind the header", path,
+                           element->line, element->count, behind);
     }
     for (uint32_t i = 0; i < header->property_count; i++) {
         if (!has_bad_type(&header->properties[i]))
             continue;
-        log_error(log, "%s:%u: its header names a type of numbers that PLY does not have", path,
-                  header->properties[i].line);
-        return WHIT_ERROR_INPUT;
+        return log_failure(log, WHIT_ERROR_INPUT,
+                           "%s:%u: its header names a type of numbers that PLY does not have", path,
+                           header->properties[i].line);
     }
     return WHIT_OK;
 }

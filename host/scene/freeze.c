@@ -16,8 +16,8 @@
 
 static whit_result refuse(struct scene *scene, const char *what, uint32_t index, const char *why)
 {
-    log_error(&scene->log, "%s: %s %u: %s", scene->name, what, index, why);
-    return WHIT_ERROR_INPUT;
+    return log_failure(&scene->log, WHIT_ERROR_INPUT, "%s: %s %u: %s", scene->name, what, index,
+                       why);
 }
 
 static whit_result check_nodes(struct scene *scene)

@@ -166,16 +166,14 @@ static whit_result explain(const struct place *place, enum child_end end,
                                             : ", as on brackets or blocks that are too deep");
         return WHIT_ERROR_INPUT;
     case CHILD_CANCELLED:
-        log_error(place->log, "%s: compiling was cancelled", name);
-        return WHIT_ERROR_CANCELLED;
+        return log_failure(place->log, WHIT_ERROR_CANCELLED, "%s: compiling was cancelled", name);
     case CHILD_NOT_STARTED:
-        log_error(place->log, "%s: the compiler's process could not be started", name);
-        return WHIT_ERROR_MEMORY;
+        return log_failure(place->log, WHIT_ERROR_MEMORY,
+                           "%s: the compiler's process could not be started", name);
     case CHILD_OPEN:
-        log_error(place->log,
-                  "%s: the compiler cannot be locked in here (%s), and that is required", name,
-                  strerror(reply->open_because));
-        return WHIT_ERROR_USAGE;
+        return log_failure(place->log, WHIT_ERROR_USAGE,
+                           "%s: the compiler cannot be locked in here (%s), and that is required",
+                           name, strerror(reply->open_because));
     default:
         shader_error_add(place->log, place->errors, name, 0, 0,
                          end == CHILD_FORBIDDEN
@@ -360,10 +358,8 @@ static whit_result take_reply(const struct place *place, const struct child_repl
 {
     struct glslang_answer *got = malloc(sizeof *got);
     whit_result result = WHIT_ERROR_INPUT;
-    if (!got) {
-        log_error(place->log, "no memory for a kernel");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!got)
+        return log_failure(place->log, WHIT_ERROR_MEMORY, "no memory for a kernel");
     if (reply->size_bytes >= sizeof *got)
         memcpy(got, reply->data, sizeof *got);
     if (reply->size_bytes < sizeof *got || !is_whole(got, reply->size_bytes)) {

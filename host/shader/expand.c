@@ -266,10 +266,8 @@ static void put_own(struct expansion *e, const struct own_file *file)
 static whit_result explain(const struct expansion *e, const whit_log *log,
                            struct shader_errors *errors)
 {
-    if (e->failed) {
-        log_error(log, "no memory for the text of a kernel");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (e->failed)
+        return log_failure(log, WHIT_ERROR_MEMORY, "no memory for the text of a kernel");
     if (e->large)
         shader_error_add(log, errors, has_user(e) ? e->text->files[0].name : e->request->kernel, 0,
                          0, "larger than 16 MiB with all that it includes");

@@ -282,10 +282,8 @@ whit_result shader_pack_read(const whit_log *log, const char *where, const char 
         return WHIT_ERROR_INPUT;
     }
     pack->bytes = u.out = malloc(bytes + 1);
-    if (!pack->bytes) {
-        log_error(log, "%s: out of memory", where);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!pack->bytes)
+        return log_failure(log, WHIT_ERROR_MEMORY, "%s: out of memory", where);
     if (take_all(&u))
         return WHIT_OK;
     shader_pack_free(pack);

@@ -385,10 +385,8 @@ static whit_result fill_infos(const whit_log *log, whit_shader *shader)
     list_files(shader);
     shader->test_infos = array_alloc_zeroed(tests->test_count, sizeof *shader->test_infos);
     shader->check_infos = array_alloc_zeroed(tests->check_count, sizeof *shader->check_infos);
-    if (!shader->test_infos || !shader->check_infos) {
-        log_error(log, "no memory for a list of tests");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!shader->test_infos || !shader->check_infos)
+        return log_failure(log, WHIT_ERROR_MEMORY, "no memory for a list of tests");
     for (uint32_t i = 0; i < tests->test_count; ++i) {
         const struct shader_test *test = &tests->tests[i];
         shader->test_infos[i] =

@@ -99,10 +99,8 @@ static whit_result read_text(struct reading *r, const struct place *place, uint3
     char *name = string_format("%s/%s", r->folder, file->path);
     r->stages->names[index] = name;
     enum reach reach = name ? roots_reach(&r->roots, name) : REACH_MISSING;
-    if (!name) {
-        log_error(r->log, "no memory for the stages");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!name)
+        return log_failure(r->log, WHIT_ERROR_MEMORY, "no memory for the stages");
     if (reach != REACH_FILE)
         return refuse(r, place, place->file ? file->path : name, reach_words(reach));
     uint8_t *data;

@@ -45,8 +45,7 @@ static whit_result refuse(struct reading *r, const struct place *place, const ch
 
 static whit_result no_memory(struct reading *r)
 {
-    log_error(r->log, "no memory for the text of a shader");
-    return WHIT_ERROR_MEMORY;
+    return log_failure(r->log, WHIT_ERROR_MEMORY, "no memory for the text of a shader");
 }
 
 /* --- bytes ---------------------------------------------------------------------------------- */
@@ -503,10 +502,8 @@ whit_result shader_text_from(const whit_log *log, const struct shader_text_sourc
                         .folder = "",
                         .sources = sources,
                         .source_count = count};
-    if (!count) {
-        log_error(log, "a shader without text");
-        return WHIT_ERROR_INPUT;
-    }
+    if (!count)
+        return log_failure(log, WHIT_ERROR_INPUT, "a shader without text");
     return read_all(&r, sources[0].relative);
 }
 

@@ -152,11 +152,10 @@ static whit_result add_measured(const struct measuring *measuring, uint32_t task
         triangles += measuring->costs[i].triangles;
         status |= measuring->statuses[i];
     }
-    if (status) {
-        log_error(&measuring->accel->log, "%s: the traversal reported status %#x",
-                  measuring->accel->scene->name, status);
-        return WHIT_ERROR_STATUS;
-    }
+    if (status)
+        return log_failure(&measuring->accel->log, WHIT_ERROR_STATUS,
+                           "%s: the traversal reported status %#x", measuring->accel->scene->name,
+                           status);
     report->measured_rays = measuring->ray_count;
     report->measured_inner_nodes = (double)pairs / measuring->ray_count;
     report->measured_triangles = (double)triangles / measuring->ray_count;
@@ -218,10 +217,9 @@ whit_result accel_report(const struct accel *accel, uint32_t ray_count, whit_acc
     struct totals totals = {0};
     *report = (whit_accel_report){0};
     double *area_ends = array_alloc(accel->mesh_count, sizeof *area_ends);
-    if (!area_ends) {
-        log_error(&accel->log, "%s: out of memory for a report on its trees", accel->scene->name);
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!area_ends)
+        return log_failure(&accel->log, WHIT_ERROR_MEMORY,
+                           "%s: out of memory for a report on its trees", accel->scene->name);
     whit_result result = WHIT_OK;
     for (uint32_t i = 0; result == WHIT_OK && i < accel->mesh_count; ++i) {
         result = add_mesh(accel, i, &totals, report);

@@ -297,10 +297,8 @@ static whit_result read_lines(const whit_log *log, const char *path, struct even
         if (!events_from_line(log, path, line, at, events, &count))
             return WHIT_ERROR_INPUT;
         for (int i = 0; i < count; ++i) {
-            if (!ARRAY_PUSH(list->events, list->count, list->capacity, events[i])) {
-                log_error(log, "%s: out of memory", path);
-                return WHIT_ERROR_MEMORY;
-            }
+            if (!ARRAY_PUSH(list->events, list->count, list->capacity, events[i]))
+                return log_failure(log, WHIT_ERROR_MEMORY, "%s: out of memory", path);
         }
         at = next;
     }

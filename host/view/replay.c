@@ -26,10 +26,9 @@ whit_result replay_open(struct view *view)
     if (params->record) {
         view->record = fopen(params->record, "w");
         view->record_ms = clock_ms();
-        if (!view->record) {
-            log_error(&view->log, "%s: cannot be written", params->record);
-            return WHIT_ERROR_OUTPUT;
-        }
+        if (!view->record)
+            return log_failure(&view->log, WHIT_ERROR_OUTPUT, "%s: cannot be written",
+                               params->record);
         setvbuf(view->record, NULL, _IOLBF, BUFSIZ); /* a line is written as soon as it happened */
         event_to_line(&(struct view_event){.kind = EVENT_CLOCK}, view->record);
     }

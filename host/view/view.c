@@ -265,17 +265,15 @@ static whit_result draw_window(struct view *view)
             view->compare.stale = true; /* the picture has to be set again */
             result = compare_step(view);
         }
-        if (result == WHIT_OK && info.width == 0 && keep) {
-            log_error(&view->log, "%s: the window has no pixels now", view->shot);
-            return WHIT_ERROR_OUTPUT;
-        }
+        if (result == WHIT_OK && info.width == 0 && keep)
+            return log_failure(&view->log, WHIT_ERROR_OUTPUT, "%s: the window has no pixels now",
+                               view->shot);
         if (result != WHIT_OK || info.width == 0)
             return result;
     }
-    if (!ui_begin(view->ui, info.width, info.height, (now_ms - view->drawn_ms) * 1e-3)) {
-        log_error(&view->log, "out of memory for the figures of the window");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!ui_begin(view->ui, info.width, info.height, (now_ms - view->drawn_ms) * 1e-3))
+        return log_failure(&view->log, WHIT_ERROR_MEMORY,
+                           "out of memory for the figures of the window");
     const struct settings before = view->settings;
     hud_draw(view);
     view->dirty |=

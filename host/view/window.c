@@ -202,9 +202,9 @@ static int make_surface(void *user, void *instance, void *surface)
 
 static whit_result fail(struct window *window, const char *what)
 {
-    log_error(&window->log, "%s%s%s; `whit render` draws without a window", what,
-              window->error[0] ? ": " : "", window->error);
-    return WHIT_ERROR_NO_DEVICE;
+    return log_failure(&window->log, WHIT_ERROR_NO_DEVICE,
+                       "%s%s%s; `whit render` draws without a window", what,
+                       window->error[0] ? ": " : "", window->error);
 }
 
 /* Xlib would end the process with exit code 1, which whit has for promises that failed. */
@@ -254,10 +254,8 @@ whit_result window_create(const whit_log *log, const struct window_params *param
 {
     *out = NULL;
     struct window *window = array_alloc_zeroed(1, sizeof *window);
-    if (!window) {
-        log_error(log, "out of memory for a window");
-        return WHIT_ERROR_MEMORY;
-    }
+    if (!window)
+        return log_failure(log, WHIT_ERROR_MEMORY, "out of memory for a window");
     window->log = *log;
     the_window = window;
     glfwSetErrorCallback(on_error);
