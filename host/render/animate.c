@@ -42,9 +42,11 @@ static void passes_check(struct renderer *renderer)
     bool outgrown = needed > renderer->node_stack_size;
     if (outgrown)
         renderer->node_stack_size = needed + STACK_SPARE;
-    if (outgrown || accel->single_identity != renderer->single_identity)
+    if (outgrown || accel->single_identity != renderer->single_identity ||
+        accel->clipped != renderer->clipped)
         passes_finish(renderer);
     renderer->single_identity = accel->single_identity;
+    renderer->clipped = accel->clipped;
 }
 
 whit_result renderer_set_time(struct renderer *renderer, double time_s)

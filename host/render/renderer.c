@@ -108,6 +108,7 @@ whit_result renderer_init(struct renderer *renderer, const whit_log *log, struct
     renderer->few_kernels = render_few_kernels(&renderer->params);
     renderer->node_stack_size = accel_stack_size(accel);
     renderer->single_identity = accel->single_identity;
+    renderer->clipped = accel->clipped;
     return result;
 }
 

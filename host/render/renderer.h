@@ -249,7 +249,7 @@ struct renderer {
     /* Properties of the scene that the pipelines were made for (up to has_secondary). */
     uint8_t *worn; /* of scene_worn_materials */
     uint32_t node_stack_size, packet_stack_size;
-    bool single_identity;
+    bool single_identity, clipped;
     bool has_secondary; /* surfaces send rays on: renderer_bounces */
     /* A change of time, or of view, failed halfway: no picture can be drawn. */
     bool between_times, between_views;

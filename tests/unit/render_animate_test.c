@@ -171,6 +171,39 @@ TEST_BY_TURNS(a_deeper_tree_gets_a_larger_stack, 0, 2)
     assert_ptr_equal(shading_of(&f), pipeline);
 }
 
+/* Rods that lie along an axis at 0 s. At 1 s they are turned, and spatial splits clip them: rays
+   then need a margin, for which there are other kernels. */
+static struct scene *turned_rods(void)
+{
+    static const float times[] = {0, 1}, turn[] = {0, 0, 0, 1, 0, 0, 0.38268343f, 0.92387953f};
+    struct scene *scene = scene_begin(&fixture_log, "animation");
+    uint32_t mesh = scene_put_mesh(scene, mesh_box(10, 0.1, 0.1));
+    for (int i = 0; i < 8; ++i) {
+        uint32_t node = scene_put_node(scene, SCENE_NONE, 0, 0.3 * i, 0);
+        scene_put_again(scene, mesh, &(struct put){.node = &node});
+        scene_put_channel(scene, node, SCENE_PATH_ROTATION, 2, times, turn);
+    }
+    return scene;
+}
+
+TEST(trees_that_get_clipped_have_other_kernels)
+{
+    static const whit_accel_params trees = {.build = WHIT_BUILD_SPATIAL,
+                                            .instances = WHIT_INSTANCES_OFF};
+    whit_renderer_params params = animate_params;
+    own_fixture f = fixture_open(turned_rods(), &trees, &params);
+    own_picture before = render_picture(&f);
+    bool was_clipped = f.accel->clipped;
+    assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
+    own_picture after = render_picture(&f);
+    assert_true(f.accel->clipped && !was_clipped);
+    params.time_s = 1.0;
+    own_renderer fresh = fixture_beside(&f, &params);
+    own_picture expected = render_picture(&fresh);
+    assert_same_picture("clipped", &after, &expected);
+    assert_int_equal(after.stats.kernel_instructions, expected.stats.kernel_instructions);
+}
+
 /* The root mean square difference over all channels, relative to the mean of the first image. */
 static double difference(const struct image *a, const struct image *b)
 {
