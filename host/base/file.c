@@ -295,7 +295,8 @@ static int open_for_writing(struct file_write *file, const char *path)
     }
     if (exists && access(path, W_OK) != 0)
         return -1;
-    file->path = target_of(path);
+    /* An open file that has no name any more exists, and cannot be replaced. */
+    file->path = exists ? realpath(path, NULL) : target_of(path);
     if (!file->path)
         return -1;
     pthread_mutex_lock(&begin_lock);

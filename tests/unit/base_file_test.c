@@ -127,8 +127,16 @@ TEST_IN(links_pipes_and_long_names, folder_begin, folder_end)
     assert_int_equal(lstat(link_path, &info), 0);
     assert_true(S_ISLNK(info.st_mode));
 
+    struct file_write file;
+    char gone[32];
+    int fd = open(path, O_WRONLY);
+    snprintf(gone, sizeof gone, "/dev/fd/%d", fd);
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(file_write_begin(NULL, gone, &file), WHIT_ERROR_OUTPUT);
+    close(fd);
+
     assert_int_equal(mkfifo(pipe_path, 0600), 0);
-    int fd = open(pipe_path, O_RDONLY | O_NONBLOCK);
+    fd = open(pipe_path, O_RDONLY | O_NONBLOCK);
     put(pipe_path, "piped");
     char text[8] = "";
     assert_int_equal(read(fd, text, 7), 5);
