@@ -93,7 +93,9 @@ static bool name_picture(const char *path, char *out, size_t bytes)
 static bool names_output(int argc, char **argv)
 {
     for (int i = 2; i < argc; ++i) {
-        if (strncmp(argv[i], "-o", 2) == 0 || strncmp(argv[i], "--o", 3) == 0)
+        const char *word = argv[i];
+        if (word[0] == '-' && /* -qo is -q and -o */
+            (strncmp(word, "--o", 3) == 0 || word[1 + strspn(word + 1, "qh")] == 'o'))
             return true;
     }
     return false;

@@ -165,6 +165,8 @@ check "what is there is kept (got $status)" \
     sh -c 'test "$1" -eq 2 && cmp "$2/kept" "$2/some.cube.png"' - "$status" "$OUT/alone"
 alone some.cube.json --size 8x8 -o mine.png
 check "another name is taken (got $status)" test "$status" -eq 0 -a -s "$OUT/alone/mine.png"
+alone some.cube.json --size 8x8 -qo yours.png
+check "behind another letter too (got $status)" test "$status" -eq 0 -a -s "$OUT/alone/yours.png"
 check "and nothing said of this one" test "$(grep -c some.cube.png "$OUT/stderr")" -eq 0
 alone nothing.json
 check "what is no file is no command (got $status)" test "$status" -eq 2
