@@ -211,9 +211,6 @@ check "a camera that is not there" grep -q "^whit: error: looks.whit:3: lost: .*
 check "all are counted" grep -qx "3 cases, 1 new, 2 broken" stdout
 expect 2 "nor accepted" check looks.whit --accept all
 check "the others are" grep -q "^case fine of " looks.golden
-printf '%s cube.json --size 16x12\n' before behind >room.whit && sed -i '1a large cube.json --size 16384x16384' room.whit
-(ulimit -v 3000000 && exec "$WHIT" check room.whit --on reference) >stdout 2>stderr
-check "a picture without room is the only one that cannot be drawn" grep -qx "3 cases, 2 new, 1 broken" stdout
 for level in 0.5 0.9; do printf 'vec3 post(ivec2 at, vec3 color) { return %s * color; }\n' $level >post-$level.glsl; done
 printf '%s cube.json --size 16x12 --shader post-0.5.glsl\n' before behind >functions.whit
 sed -i '1a broken broken.json --shader post-0.9.glsl' functions.whit

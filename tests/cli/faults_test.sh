@@ -93,7 +93,11 @@ else
     little_memory 40 20 80 scene model.obj
 fi
 check "some have too little" test $errors -gt 1
-rm -f a.pfm
+printf '%s model.obj --size 16x12\n' before behind >room.whit && sed -i '1a large model.obj --size 16384x16384' room.whit
+with_memory 3000000 check room.whit --on reference
+check "a picture without room is the only one of a suite that cannot be drawn" \
+    grep -qx "3 cases, 2 new, 1 broken" "$OUT/stdout"
+rm -f a.pfm room.whit
 
 # ---- No space, no permission, no HOME, no /tmp ----
 
