@@ -263,6 +263,13 @@ static void put_own(struct expansion *e, const struct own_file *file)
     }
 }
 
+static const char *kernel_name(const struct expansion *e)
+{
+    const struct shader_stages *stages = e->request->stages;
+    uint32_t index = shader_stages_find(stages, e->request->kernel);
+    return stages && index < stages->count ? stages->names[index] : e->request->kernel;
+}
+
 static whit_result explain(const struct expansion *e, const whit_log *log,
                            struct shader_errors *errors)
 {
@@ -271,8 +278,11 @@ static whit_result explain(const struct expansion *e, const whit_log *log,
     if (e->large)
         shader_error_add(log, errors, has_user(e) ? e->text->files[0].name : e->request->kernel, 0,
                          0, "larger than 16 MiB with all that it includes");
-    else
+    else if (e->missing)
         shader_error_add(log, errors, "whit", 0, 0, "no shader %s is embedded", e->missing);
+    else
+        shader_error_add(log, errors, kernel_name(e), 0, 0, "%s",
+                         e->out ? "it does not include hook/user.glsl" : "it is empty");
     return WHIT_ERROR_INPUT;
 }
 
@@ -296,10 +306,11 @@ whit_result expand_kernel(const whit_log *log, const struct shader_text *text,
         put_own(&e, &kernel);
     free(e.pasted);
     *expanded = (struct expanded){0};
-    if (goes_on(&e) && e.out) {
+    if (goes_on(&e) && e.out && (!has_user(&e) || e.user_end)) {
         *expanded = (struct expanded){e.out, e.used, e.user_at, e.user_end};
         return WHIT_OK;
     }
+    whit_result result = explain(&e, log, errors);
     free(e.out);
-    return explain(&e, log, errors);
+    return result;
 }

@@ -23,8 +23,9 @@ size_t expand_included(const char *line, const char **name);
    "x.glsl". */
 void expand_join(const char *from, const char *name, size_t length, char out[EXPAND_NAME_BYTES]);
 
-/* The text that the compiler gets. WHIT_ERROR_MEMORY, or _INPUT (no such kernel, or too much text,
-   which `errors` has too): it was logged, and *expanded is empty. */
+/* The text that the compiler gets. WHIT_ERROR_MEMORY, or _INPUT (no such kernel, one without a
+   place for `text`, or too much text, which `errors` has too): it was logged, and *expanded is
+   empty. */
 WHIT_CHECK whit_result expand_kernel(const whit_log *log, const struct shader_text *text,
                                      const struct shader_request *request, const char *own,
                                      struct expanded *expanded, struct shader_errors *errors);

@@ -34,6 +34,13 @@ echo 'float last = nope;' >>st/kernel/resolve.comp
 refuse 2 "behind conditions" "st/kernel/resolve.comp:$(wc -l <st/kernel/resolve.comp): 'nope'" \
     render "$CUBE" --size 8x8 --stages st -o no.png
 cp "$SHADERS/kernel/resolve.comp" st/kernel/
+sed -i '/user.glsl/d' st/kernel/hook.comp
+refuse 2 "no place for functions" "st/kernel/hook.comp: it does not include hook/user.glsl" \
+    render "$CUBE" --size 8x8 --stages st --shader half.glsl -o no.png
+cp "$SHADERS/kernel/hook.comp" st/kernel/
+: >st/kernel/resolve.comp
+refuse 2 "an empty stage" "st/kernel/resolve.comp: it is empty" render "$CUBE" --size 8x8 --stages st -o no.png
+cp "$SHADERS/kernel/resolve.comp" st/kernel/
 echo '#include "no.glsl"' | broken "no file" bind/hook.glsl 3 '#include "bind/no.glsl": there is no such file'
 cp half.glsl ..
 echo '#include "../../half.glsl"' | broken "a file above" lib/spawn.glsl 3 '#include .*: it lies outside'
