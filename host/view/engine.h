@@ -100,7 +100,7 @@ double engine_drawn_ms(const whit_stats *stats);
 struct engine_change {
     uint64_t number;          /* counts up; 0: none yet */
     struct settings settings; /* settings after the change */
-    char what[128];           /* "traversal distance -> sign" */
+    char what[256];           /* "traversal distance -> sign" */
     bool has_colors;          /* both pictures show colours */
     struct difference difference;
     /* engine_drawn_ms of one picture each, or the medians of the pictures in `ms`. */

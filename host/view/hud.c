@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "view/choices.h"
 #include "view/hud.h"
 #include "view/keys.h"
@@ -102,7 +103,8 @@ static void draw_shares(const struct engine_frame *frame, uint32_t stage)
             continue;
         whit_material_info material;
         whit_scene_get_material(frame->scene->scene, share->material, &material);
-        ui_text_dim("    %.0f %% of its hits: %.60s", 100.0 * share->share, material.name);
+        ui_text_dim("    %.0f %% of its hits: %s", 100.0 * share->share,
+                    text_token(material.name).text);
         ++shown;
     }
 }

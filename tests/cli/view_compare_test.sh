@@ -88,6 +88,11 @@ on: choose shadows | words = --size 320x240 | frame.pixels as start
 both: choose highlights, press T | change.what = effects auto -> -highlights, traversal distance -> sign
     | prices.highlights = (no prices.highlights)
 END
+    play "many effects" "$CUBE" --size 320x240 --ui-scale 0.5 \
+        --effects +directional-lights,+environment-map,+smooth-normals,+vertex-colors,+metal-rough,+tinted-shadows <<END
+both: press F2 x2, still, press X, choose highlights, press T | change.what has traversal distance -> sign
+    | prices.highlights = (no prices.highlights)
+END
 fi
 
 # ---- Settings by mouse, with the same effect as by keys ----
