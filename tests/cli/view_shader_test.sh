@@ -103,6 +103,7 @@ fi
 
 cp "$CUBE" cube.json
 if part 1 2; then
+    said=$EXPECTED EXPECTED= # nothing is said here
     play "a slider that is moved" cube.json --size 200x150 --ui-scale 0.5 --shader live/a.glsl <<END
 still
 press X
@@ -176,6 +177,7 @@ END
         echo $option >bad.view
         refuse 2 "a file with $option" "bad.view:1: ${option%=*} is nothing to be saved" view cube.json --state bad.view
     done
+    EXPECTED=$said
 fi
 
 # ---- Stages of a checkout that are saved while their picture is shown ----
