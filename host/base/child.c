@@ -89,8 +89,8 @@ bool child_settle(int fd, int at)
     }
     for (int i = 1; i < NSIG; ++i)
         signal(i, SIG_DFL);
-    signal(SIGINT,
-           SIG_IGN); /* Ctrl+C reaches the whole group; the parent decides what becomes of it */
+    /* Ctrl+C reaches the whole group; the parent decides what becomes of the child. */
+    signal(SIGINT, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
     return placed;
 }

@@ -78,10 +78,13 @@ bool platform_has_room(size_t bytes)
 ssize_t platform_read(int fd, void *data, size_t bytes)
 {
     size_t done = 0;
-    for (ssize_t got = 1; got != 0 && done<bytes; done += got> 0 ? (size_t)got : 0) {
-        got = read(fd, (char *)data + done, bytes - done);
+    while (done < bytes) {
+        ssize_t got = read(fd, (char *)data + done, bytes - done);
+        if (got == 0)
+            break;
         if (got < 0 && errno != EINTR)
             return -1;
+        done += got > 0 ? (size_t)got : 0;
     }
     return (ssize_t)done;
 }
