@@ -63,7 +63,7 @@ WHIT_CHECK whit_result importer_run(const whit_log *log, const char *path,
                                     const whit_load_params *params, struct import_block *block);
 void importer_finish(struct import_block *block);
 
-/* The checks of importer_run, on any bytes, 4-byte aligned: fills parts, GLB and counts of *block.
+/* The checks of importer_run, on any bytes, 8-byte aligned: fills parts, GLB and counts of *block.
    WHIT_ERROR_INPUT: the data are damaged; or _MEMORY. */
 WHIT_CHECK whit_result importer_parse(uint8_t *data, size_t size_bytes, struct import_block *block);
 
