@@ -33,12 +33,12 @@ bool format_is_stl(const uint8_t *data, size_t size_bytes, uint32_t *count)
     return *count && size_bytes == STL_HEADER_BYTES + STL_TRIANGLE_BYTES * (uint64_t)*count;
 }
 
-/* Whether the outermost JSON object has this key. It tells glTF, which requires "asset", from
-   whit's scene files, which have no such key. */
-static bool has_key(const char *text, const char *key)
+/* Whether the outermost JSON object has the key "asset". It tells glTF, which requires it, from
+   whit's scene files, which have no such key. A damaged text counts as glTF wherever it has it. */
+static bool has_asset(const char *text)
 {
     json_t *root = json_loads(text, 0, NULL);
-    bool found = json_object_get(root, key);
+    bool found = root ? json_object_get(root, "asset") != NULL : strstr(text, "\"asset\"") != NULL;
     json_decref(root);
     return found;
 }
@@ -81,7 +81,7 @@ const char *format_find(const uint8_t *data, size_t size_bytes)
     while (is_blank(*text))
         text++;
     if (*text == '{')
-        return has_key(text, "asset") ? "gltf" : "json";
+        return has_asset(text) ? "gltf" : "json";
     if (begins(text, "ply") && (text[3] == '\n' || text[3] == '\r'))
         return "ply";
     if (begins(text, "solid") && head_has(data, size_bytes, "facet"))

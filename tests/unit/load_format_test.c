@@ -17,6 +17,7 @@ TEST(text_tells)
         {"glTF\x02", "glb"},
         {"{ \"asset\": {} }", "gltf"},
         {"\xef\xbb\xbf\n{\"nodes\": [{\"asset\": 1}], \"asset\" : {}}", "gltf"},
+        {"{ \"asset\": {},", "gltf"},
         {"{}", "json"},
         {"\n { \"objects\": [ { \"asset\": 1 } ] }", "json"},
         {"{ \"name\": \"asset\", \"x\": \"\\\"asset\\\": 1\" }", "json"},
