@@ -1,4 +1,4 @@
-// The sequence of samples, the same as in host/render/sequence.c, which says what it must fulfil.
+// The sequence of samples, the same as in host/picture/sequence.c, which says what it must fulfil.
 #ifndef LIB_SEQUENCE_GLSL
 #define LIB_SEQUENCE_GLSL
 

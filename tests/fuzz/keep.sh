@@ -27,7 +27,7 @@ sources() {
     validate) echo host/accel/validate*.c ;;
     store) echo host/base/store.c ;;
     paths) echo host/base/roots.c ;;
-    settings) echo host/app/view/state_file.c host/app/arguments.c host/cost/words.c ;;
+    settings) echo host/app/view/state_file.c host/app/arguments.c host/settings/*.c ;;
     report) echo host/app/cost/cost_json.c ;;
     view) echo host/view/events.c host/view/remembered_cameras.c ;;
     esac
