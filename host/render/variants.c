@@ -93,9 +93,9 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_GROUP_SIZE = spec.SPEC_LIST_GROUP = spec.SPEC_DEFERRED_GROUP = RENDER_GROUP_SIZE;
     spec.SPEC_LOAD_PATH = renderer->scene_buffers.texel_loads ? LOAD_TEXEL : LOAD_STORAGE;
     spec.SPEC_STACK_SIZE = renderer->node_stack_size;
-    spec.SPEC_INSTANCED = !accel->single_identity && !accel->flat;
+    spec.SPEC_INSTANCED = !renderer->single_identity && !accel->flat;
     spec.SPEC_FLAT = accel->flat;
-    spec.SPEC_CLIPPED = accel->clipped;
+    spec.SPEC_CLIPPED = renderer->clipped;
     spec.SPEC_ORDER = (uint32_t)renderer->params.traversal;
     spec.SPEC_NUMERICS = renderer->params.numerics;
     spec.SPEC_COUNT = renderer->params.count;
@@ -557,7 +557,7 @@ bool variant_has_beams(const struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;
     return renderer->params.numerics == NUMERICS_WATERTIGHT && upload_can_widen(renderer) &&
-           (accel->single_identity || accel->flat);
+           (renderer->single_identity || accel->flat);
 }
 
 whit_result variant_create_trace(struct renderer *renderer, bool any, bool beams, struct pass *pass)

@@ -204,6 +204,20 @@ TEST(trees_that_get_clipped_have_other_kernels)
     assert_int_equal(after.stats.kernel_instructions, expected.stats.kernel_instructions);
 }
 
+/* Kernels are made late, when the trees may be at the time of another renderer. */
+TEST(renderers_of_one_tree_at_two_times)
+{
+    whit_renderer_params params = animate_params;
+    own_fixture f = fixture_open(leaves_its_place(), NULL, &params);
+    params.time_s = 1.0;
+    own_renderer later = fixture_beside(&f, &params);
+    for (int i = 0; i < 2; ++i) {
+        own_picture picture = render_picture(i ? &later : &f);
+        own_picture anew = take_anew(&f, 0, i);
+        assert_same_picture("two times", &picture, &anew);
+    }
+}
+
 /* The root mean square difference over all channels, relative to the mean of the first image. */
 static double difference(const struct image *a, const struct image *b)
 {
