@@ -116,6 +116,8 @@ whit_result importer_run(const whit_log *log, const char *path,
         foreign_ask(log, &limits, importer_assimp_run, &copy, &block->reply, &answer);
     if (result != WHIT_OK) {
         log_reason(log, path, request->files[0].name, answer.reason);
+        if (answer.result == WHIT_ERROR_MEMORY) /* no answer of importer_assimp_run */
+            result = WHIT_ERROR_INPUT;
     } else {
         result = importer_parse(block->reply.data, block->reply.size_bytes - sizeof answer, block);
         if (result != WHIT_OK)
