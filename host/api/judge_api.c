@@ -103,7 +103,7 @@ whit_result whit_judge_create(const whit_scene *scene, const whit_judge_params *
     whit_judge *judge = calloc(1, sizeof *judge);
     *out = NULL;
     if (!judge)
-        return WHIT_ERROR_MEMORY;
+        return API_FAIL(log, WHIT_ERROR_MEMORY, "out of memory");
     judge->log = log_or_silence(log);
     whit_result result = fill(judge, scene, params ? params : &defaults);
     if (result == WHIT_OK)

@@ -35,8 +35,7 @@ struct cli_command {
     const struct setting *options;            /* of the command's own record */
     uint32_t settings;                        /* a bit of enum settings_command; 0: it takes none */
     void (*usual)(struct settings *settings); /* sets defaults of its own; NULL: none */
-    uint32_t
-        others_max; /* most arguments behind the first that are no options, to CLI_OTHERS_MAX */
+    uint32_t others_max; /* arguments behind the first that are no options, to CLI_OTHERS_MAX */
     int (*run)(const struct cli_command *command, int argc, char **argv);
     /* Gives word `index` that an option accepts beside its values; NULL: no more words. May be
        NULL. */

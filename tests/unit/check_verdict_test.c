@@ -188,5 +188,8 @@ TEST(texts_add_up)
     verdict_add(&result, CHECK_UNMET, strdup("four"));
     assert_string_equal(result.text, "no golden; four");
     assert_int_equal(result.verdict, CHECK_UNMET);
+    verdict_add(&result, CHECK_UNMET, NULL); /* memory ran out */
+    verdict_add(&result, CHECK_UNMET, strdup("five"));
+    assert_null(result.text);
     verdict_finish(&result);
 }

@@ -308,7 +308,7 @@ static void tell_missing(const struct drawing *drawing, struct check_result *res
     whit_scene_info info;
     whit_scene_get_info(drawing->job.scene, &info);
     uint32_t missing = info.textures_missing;
-    if (missing)
+    if (missing && result->text)
         verdict_set(result, result->verdict,
                     string_format("%s; %u texture%s cannot be read and %s magenta", result->text,
                                   missing, missing == 1 ? "" : "s", missing == 1 ? "is" : "are"));

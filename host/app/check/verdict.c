@@ -31,11 +31,11 @@ void verdict_set(struct check_result *result, enum check_verdict verdict, char *
 void verdict_add(struct check_result *result, enum check_verdict verdict, char *text)
 {
     bool said = result->verdict >= CHECK_NEW;
-    char *both = said ? string_format("%s; %s", result->text, text) : NULL;
-    if (both)
+    char *both = said && result->text && text ? string_format("%s; %s", result->text, text) : NULL;
+    if (said)
         free(text);
     verdict_set(result, verdict > result->verdict || !said ? verdict : result->verdict,
-                both ? both : text);
+                said ? both : text);
 }
 
 void verdict_finish(struct check_result *result)

@@ -41,7 +41,7 @@ bool verdict_find(struct check_result *result, const struct golden *golden);
 /* Sets verdict and text; takes over `text`. */
 void verdict_set(struct check_result *result, enum check_verdict verdict, char *text);
 /* Adds a verdict; the worse of the two counts. `text` is appended to the text of a verdict from
-   CHECK_NEW on, and replaces that of a better one. */
+   CHECK_NEW on, and replaces that of a better one. Without memory for either there is no text. */
 void verdict_add(struct check_result *result, enum check_verdict verdict, char *text);
 /* The worse of the exit code `worst` and the case's own (docs/check.md). */
 int verdict_exit(const struct check_result *result, int worst);
