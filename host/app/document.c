@@ -233,16 +233,17 @@ static char *dump_all(const json_t *value, size_t flags)
 static char *dump(json_t *value, size_t flags)
 {
     char *text = dump_all(value, flags | JSON_PRESERVE_ORDER | JSON_REAL_PRECISION(15));
-    char *shown = malloc(6 * strlen(text) + WHIT_SHOWN_BYTES), *to = shown;
+    char *shown = NULL;
+    size_t size;
+    FILE *to = open_memstream(&shown, &size);
     json_decref(value);
-    if (!shown)
-        out_of_memory();
-    for (const char *from = text; *from; to += strlen(to)) {
-        if (*from == '\n')
-            from += sprintf(to, "\n");
-        else
-            from += whit_text_next(from, to);
+    for (const char *from = text; to && *from;) {
+        char part[WHIT_SHOWN_BYTES] = "\n";
+        from += *from == '\n' ? 1 : whit_text_next(from, part);
+        fputs(part, to);
     }
+    if (!to || ferror(to) || fclose(to) != 0)
+        out_of_memory();
     free(text);
     return shown;
 }
