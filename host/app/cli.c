@@ -389,6 +389,11 @@ bool cli_can_write(const char *path)
     return true;
 }
 
+bool cli_is_piped(const char *path)
+{
+    return path && strcmp(path, "/dev/stdout") == 0;
+}
+
 const char *cli_shown(const char *text)
 {
     static _Thread_local char kept[4][16384];

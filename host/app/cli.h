@@ -129,6 +129,8 @@ bool cli_can_write(const char *path);
 /* Escapes names and other text that whit did not write, by whit_text_show. The result is valid
    until the fourth call after this one; only one thread may use it at a time. NULL counts as "". */
 const char *cli_shown(const char *text);
+/* Whether that report, or NULL, is standard output, which has nothing else on it then. */
+bool cli_is_piped(const char *path);
 /* Flushes standard output; a failed write is an error, as with `whit ... > /dev/full`. Returns the
    exit code, else `status`. */
 int cli_finish_stdout(int status);

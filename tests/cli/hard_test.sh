@@ -59,6 +59,8 @@ check "is of that size" test "$(head -c 8 "$(printf "$OUT/\033.pfm")" | tr '\n' 
 rm "$J"
 refuse 2 "too few rays" "from 512 to" hard --rays 10
 refuse 2 "no such level" "fast, watertight, exact" hard --numerics best
+expect 0 "JSON on standard output" hard "$CUBE" --quick --rays 512 --quiet --json /dev/stdout
+check "is nothing else" jq -e .rows "$OUT/stdout"
 refuse 2 "JSON to a pipe" "/dev/stdout" hard --json -
 refuse 2 "JSON nowhere" "nowhere/x" hard --json "$OUT/nowhere/x"
 refuse 2 "no such case" "in its name" hard --case goblin --quiet

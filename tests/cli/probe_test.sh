@@ -84,6 +84,8 @@ for pixel in 12 12, ,12 1,2,3 -1,2 1.5,2 a,b "1, 2"; do
 done
 refuse 2 "adaptive" "4, 16 or 64" probe "$CUBE" --pixel 1,1 --aa adaptive:0.1
 refuse 2 "too many rays" "1 to 16383" probe "$CUBE" --pixel 1,1 --rays 20000
+expect 0 "JSON on standard output" probe "$CUBE" $S --pixel 1,1 --quiet --json /dev/stdout
+check "is nothing else" jq -e .rays "$OUT/stdout"
 refuse 2 "JSON to a pipe" "/dev/stdout" probe "$CUBE" --pixel 1,1 --json -
 refuse 2 "JSON nowhere" "nowhere/x" probe "$CUBE" --pixel 1,1 --json "$OUT/nowhere/x"
 refuse 2 "no such camera" "no camera" probe "$CUBE" --pixel 1,1 --camera nobody --quiet

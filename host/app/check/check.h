@@ -44,12 +44,9 @@ bool check_names_match(const struct check_names *names, const char *name);
    is written to standard output. */
 static inline FILE *check_lines(const struct check *check)
 {
-    const char *const reports[] = {check->json, check->junit, check->report};
-    for (size_t i = 0; i < sizeof reports / sizeof *reports; ++i) {
-        if (reports[i] && strcmp(reports[i], "/dev/stdout") == 0)
-            return stderr;
-    }
-    return stdout;
+    bool piped =
+        cli_is_piped(check->json) || cli_is_piped(check->junit) || cli_is_piped(check->report);
+    return piped ? stderr : stdout;
 }
 
 /* accept_from.c: fills the results of the cases in `wanted` from the reports of

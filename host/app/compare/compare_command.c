@@ -4,7 +4,6 @@
 #include "app/job.h"
 #include "base/path.h"
 #include <math.h>
-#include <string.h>
 
 enum metric {
     METRIC_RMSE,
@@ -121,8 +120,7 @@ static void print_head(const struct compare *compare)
 static int print_text(const struct compare *compare)
 {
     const whit_difference *found = &compare->found;
-    bool piped = compare->json && strcmp(compare->json, "/dev/stdout") == 0;
-    if (compare->job.settings.quiet || piped) /* JSON on standard output has nothing beside it */
+    if (compare->job.settings.quiet || cli_is_piped(compare->json))
         return EXIT_FINE;
     if (compare->has_metric) {
         print_metric(compare, compare->metric);

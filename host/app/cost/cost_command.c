@@ -237,24 +237,15 @@ static void say_stopped(struct cost *cost, whit_result result)
     cli_set_kept(measured, cost->report->row_count, "settings were measured");
 }
 
-/* Whether a report is written to standard output, which has nothing else then. */
-static bool is_piped(const struct cost *cost)
-{
-    const char *const files[] = {cost->html, cost->json, cost->csv, cost->markdown};
-    for (size_t i = 0; i < sizeof files / sizeof *files; ++i) {
-        if (files[i] && strcmp(files[i], "/dev/stdout") == 0)
-            return true;
-    }
-    return false;
-}
-
 static int work(struct cost *cost)
 {
     whit_result result = find_out(cost);
     if (!cost->report)
         return cli_exit_of(result);
     whit_result saved = save_all(cost);
-    int status = is_piped(cost) ? EXIT_FINE : cost_print_text(cost);
+    bool piped = cli_is_piped(cost->html) || cli_is_piped(cost->json) || cli_is_piped(cost->csv) ||
+                 cli_is_piped(cost->markdown);
+    int status = piped ? EXIT_FINE : cost_print_text(cost);
     if (result != WHIT_OK) {
         say_stopped(cost, result);
         return cli_exit_of(result);

@@ -111,7 +111,7 @@ static int work(struct hard *hard)
         result = hard_save_json(hard);
     if (result != WHIT_OK)
         return cli_exit_of(result);
-    int status = hard_print(hard);
+    int status = cli_is_piped(hard->json_path) ? EXIT_FINE : hard_print(hard);
     const whit_hard_report *report = hard->report;
     if (report->unanswered)
         cli_error("%u of %u rows: the device gave no answer, so no promise of theirs is shown",

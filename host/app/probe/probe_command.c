@@ -66,7 +66,7 @@ static int work(struct probe *probe)
         result = probe_save_json(probe);
     if (result != WHIT_OK)
         return cli_exit_of(result);
-    int status = probe_print(probe);
+    int status = cli_is_piped(probe->json_path) ? EXIT_FINE : probe_print(probe);
     const whit_probe_report *report = probe->report;
     if (report->dropped)
         cli_warning("%u of %u rays had no room and are not shown: --rays", report->dropped,
