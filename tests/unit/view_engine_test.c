@@ -266,6 +266,32 @@ TEST(memory_that_runs_out_for_kept_samples_is_survived)
     engine_end();
 }
 
+/* ---- Probes ---- */
+
+static atomic_bool probe_is_cancelled;
+
+WRAPPED(whit_result, whit_probe, whit_renderer *renderer, uint32_t x, uint32_t y, uint32_t records,
+        whit_probe_report **report)
+{
+    return atomic_exchange(&probe_is_cancelled, false)
+               ? WHIT_ERROR_CANCELLED
+               : __real_whit_probe(renderer, x, y, records, report);
+}
+
+TEST(a_cancelled_probe_is_made_again)
+{
+    struct engine_probe probe = {0};
+    begin("cube.json");
+    atomic_store(&probe_is_cancelled, true);
+    engine_ask_probe(engine, WIDTH / 2, HEIGHT / 2);
+    double start_ms = clock_ms();
+    while (!engine_take_probe(engine, &probe))
+        (void)take(start_ms);
+    assert_non_null(probe.report);
+    engine_probe_finish(&probe);
+    engine_end();
+}
+
 /* ---- Moving cameras ---- */
 
 /* Pictures are shown even if the camera turns faster than they are drawn. */
