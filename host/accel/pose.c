@@ -120,6 +120,7 @@ struct accel_posing {
     uint32_t *indices;              /* [rank]: its instance */
     uint32_t *bad;         /* [chunk]: its first instance without an inverse, or UINT32_MAX */
     struct spread *spread; /* [chunk]: the largest of its instances */
+    struct bvh_box slack;  /* of node 1, see instances_slack */
     uint32_t count;        /* of ranks */
     bool has_tree;
 };
@@ -292,6 +293,13 @@ static void instances_slack(struct accel *accel)
         node->lo[i] = float_above(max.own[i] * WIDENING);
         node->hi[i] = float_above(max.others[i] * WIDENING);
     }
+    accel->posing->slack = bvh_node_box(node);
+}
+
+bool accel_has_slack(const struct accel *accel)
+{
+    const struct bvh_box found = bvh_node_box(&accel->nodes[1]);
+    return memcmp(&found, &accel->posing->slack, sizeof found) == 0;
 }
 
 static void instances_exchange(struct accel *accel)

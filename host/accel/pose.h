@@ -9,6 +9,10 @@ void accel_posing_destroy(struct accel_posing *posing);
 /* Sets the tree that an instance's rays enter: its root, and the centre and reach of its box. */
 void accel_instance_enter(struct gpu_instance *out, const struct accel_mesh *mesh);
 
+/* Whether the tree over instances, which must not be empty, has in node 1 the margin of its rays
+   that the pose gave it. */
+bool accel_has_slack(const struct accel *accel);
+
 /* Moves the instances: rewrites `instances` and the tree over them, leaves mesh trees alone. */
 WHIT_CHECK whit_result accel_pose(struct accel *accel, const struct scene_pose *pose);
 /* Returns at once where the accel has the pose of that time, else does as accel_pose. Renderers of

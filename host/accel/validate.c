@@ -7,6 +7,7 @@
 
 #include "accel/extent.h"
 #include "accel/flat.h"
+#include "accel/pose.h"
 #include "accel/validate.h"
 #include "base/array.h"
 #include "bvh/complete.h"
@@ -634,6 +635,8 @@ static whit_result validate_instances(const struct accel *accel)
     if (accel->instance_node_count > accel->instance_node_capacity ||
         accel->instance_node_capacity > accel->node_count)
         refuse(&view, "nodes out of range", accel->instance_node_count);
+    else if (accel->instance_node_count > 1 && !accel_has_slack(accel))
+        refuse(&view, "the margin of rays is not that of the pose, node", 1);
     else if (instances_number(accel, dense, &view.primitive_count))
         result = tree_check(&view, accel->instance_depth, accel->instance_root);
     free(dense);

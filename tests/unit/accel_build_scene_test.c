@@ -457,6 +457,7 @@ TEST(broken_scenes_are_refused)
         {&instance->origin_x, float_bits(instance->origin_x + 3.0f)},
         {&accel->instance_depth, accel->instance_depth + 1},
         {&accel->nodes[accel->nodes[0].first].hi[0], float_bits(1e-3f)},
+        {&accel->nodes[1].lo[0], float_bits(-1e5f)},
     };
     check_changes(accel, changes, sizeof changes / sizeof *changes);
 }
