@@ -361,6 +361,11 @@ void cli_limit_time(double seconds)
         (void)set_timer(grace_ms);
 }
 
+double cli_time_end_ms(void)
+{
+    return limit_end_ms;
+}
+
 double cli_time_left_s(void)
 {
     if (limit_end_ms == 0.0)

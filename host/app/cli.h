@@ -117,6 +117,8 @@ void cli_say_next(void);
 /* Ends the process with EXIT_TIME a little after `seconds`, in case the work does not watch the
    limit itself. */
 void cli_limit_time(double seconds);
+/* When the time limit passes, by whit_clock_ms; 0: no limit. */
+double cli_time_end_ms(void);
 /* Seconds left of the time limit, never quite 0; 0: no limit. */
 double cli_time_left_s(void);
 bool cli_time_over(void);

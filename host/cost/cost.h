@@ -128,7 +128,7 @@ struct cost_request {
     whit_accel *accel;               /* of the usual settings; is set to the picture's time */
     const struct settings *settings; /* everything that knobs do not set */
     const volatile bool *cancel;
-    double time_limit_s;  /* for all measurements, strict; 0: none */
+    double end_ms;        /* of whit_clock_ms: all measurements end by then, strict; 0: no limit */
     uint64_t knobs;       /* knobs to measure, as bits by index in knob_table; 0: all */
     double seconds;       /* time for all measurements, roughly */
     uint32_t samples_max; /* of the reference: 4, 16 or 64; 0: 64, or 16 for a larger picture */
@@ -145,7 +145,7 @@ struct cost_request {
 };
 
 /* Makes a report. WHIT_ERROR_CANCELLED where `cancel` stopped it, WHIT_ERROR_TIME_LIMIT where
-   time_limit_s did; *out then has what was measured before. *out is NULL where not even the usual
+   end_ms did; *out then has what was measured before. *out is NULL where not even the usual
    settings were measured. */
 WHIT_CHECK whit_result cost_measure(const struct cost_request *request, struct cost_report **out);
 void cost_report_destroy(struct cost_report *report);

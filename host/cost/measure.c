@@ -22,17 +22,16 @@ static const double OF_USUAL_ROOM = 1.2;
 whit_result measure_still_wanted(const struct measure *measure)
 {
     const volatile bool *cancel = measure->request->cancel;
-    double limit_s = measure->request->time_limit_s;
+    bool limited = measure->request->end_ms > 0.0;
     if (cancel && *cancel)
         return WHIT_ERROR_CANCELLED;
-    return limit_s > 0.0 && measure_left_s(measure) <= LEFT_MIN_S ? WHIT_ERROR_TIME_LIMIT : WHIT_OK;
+    return limited && measure_left_s(measure) <= LEFT_MIN_S ? WHIT_ERROR_TIME_LIMIT : WHIT_OK;
 }
 
 double measure_left_s(const struct measure *measure)
 {
-    double limit_s = measure->request->time_limit_s;
-    double spent_s = (whit_clock_ms() - measure->start_ms) * 1e-3;
-    return limit_s > 0.0 ? fmax(limit_s - spent_s, LEFT_MIN_S) : 0.0;
+    double end_ms = measure->request->end_ms;
+    return end_ms > 0.0 ? fmax((end_ms - whit_clock_ms()) * 1e-3, LEFT_MIN_S) : 0.0;
 }
 
 /* Estimate of the time left: what is left of the requested time, or more, by the time that the last

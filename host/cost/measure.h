@@ -27,7 +27,7 @@ struct measure {
 
 /* WHIT_ERROR_CANCELLED once the request's `cancel` is set, WHIT_ERROR_TIME_LIMIT after its time. */
 whit_result measure_still_wanted(const struct measure *measure);
-/* Seconds left of time_limit_s, as the limit for renderers and references, which count from their
+/* Seconds left until end_ms, as the limit for renderers and references, which count from their
    own start; 0: there is no limit. */
 double measure_left_s(const struct measure *measure);
 /* Reports progress; `what`: the current task. */

@@ -9,7 +9,7 @@ whit_renderer_params measure_sized(const struct measure *measure, const struct s
                                    uint32_t width, uint32_t height);
 /* Makes a renderer with the kernels and packets that the full-size picture has. It keeps them when
    it draws views of smaller sizes, so that these take as long per pixel. Errors as of
-   whit_renderer_create. */
+   whit_renderer_create and measure_still_wanted; after these *out is there. */
 WHIT_CHECK whit_result measure_renderer(const struct measure *measure,
                                         const struct settings *target, whit_accel *accel,
                                         whit_renderer **out);

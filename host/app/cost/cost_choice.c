@@ -33,7 +33,7 @@ static whit_result measure(struct job *job, struct cost_report **report)
         .accel = job->accel,
         .settings = &job->settings,
         .cancel = &cli_cancel,
-        .time_limit_s = cli_time_left_s(),
+        .end_ms = cli_time_end_ms(),
         .knobs = knobs_of_light(),
         .seconds = COST_SECONDS_QUICK,
         .samples_max = SAMPLES,

@@ -174,7 +174,7 @@ static whit_result find_out(struct cost *cost)
     request->accel = job->accel;
     request->settings = &job->settings;
     request->cancel = &cli_cancel;
-    request->time_limit_s = cli_time_left_s();
+    request->end_ms = cli_time_end_ms();
     request->progress = tell;
     request->progress_user = cost;
     request->hush = cli_hush;
