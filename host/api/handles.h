@@ -54,7 +54,7 @@ struct whit_renderer {
    what it gives. */
 #define API_FAIL(log, result, ...) (log_error((log), __VA_ARGS__), (result))
 
-/* What is asked for: the defaults where `params` is NULL. */
+/* Gives *params, or the defaults where `params` is NULL. */
 whit_renderer_params api_params(const whit_renderer_params *params);
 
 /* WHIT_ERROR_USAGE, logged, for a value that the enumeration does not have. */

@@ -64,9 +64,9 @@ void child_release_forks(void);
    blocked. The child sets its handlers, and then the signal mask *before. child_run works in such a
    child too. */
 pid_t child_fork(sigset_t *before);
-/* What such a child does first: moves the descriptor `fd` to the number `at`, puts /dev/null at all
-   numbers below, and lets signals do what they do by default, but for SIGINT and SIGPIPE, which it
-   ignores. False: there is no descriptor `at`. */
+/* A forked child calls this first. It moves the descriptor `fd` to the number `at`, puts /dev/null
+   at all numbers below, and lets signals do what they do by default, but for SIGINT and SIGPIPE,
+   which it ignores. False: there is no descriptor `at`. */
 bool child_settle(int fd, int at);
 
 #endif

@@ -94,7 +94,7 @@ static float value_at(const struct image *values, size_t i)
     return values->channels < 3 ? pixel[0] : farthest(pixel);
 }
 
-/* What counts for the scale: the value, or with `is_signed` its distance from 0. */
+/* The scale is made of these: the value, or with `is_signed` its distance from 0. */
 static float size_at(const struct image *values, bool is_signed, size_t i)
 {
     float value = value_at(values, i);

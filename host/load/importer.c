@@ -13,7 +13,7 @@
 #define REPLY_PER_BYTE 64
 #define REPLY_BASE     (UINT64_C(64) << 20)
 
-/* What is left of a reply. */
+/* The bytes of a reply that were not read yet. */
 struct rest {
     uint8_t *at;
     size_t bytes;

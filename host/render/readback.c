@@ -21,7 +21,7 @@ bool readback_is_late(const struct renderer *renderer)
 
 enum { READ_SLICE = 4096 }; /* pixels that are read back at once */
 
-/* Where the device has a plane of a band. */
+/* The place on the device of one plane of a band. */
 struct plane {
     struct buffer *buffer; /* NULL: without secondary rays nothing is cut, so weights are zeros */
     uint32_t channels;

@@ -71,7 +71,7 @@ static char *channel_name(const struct scene *scene, const struct scene_names *n
 }
 
 /* Adds the name `own`, made unique by a number where it is empty or taken. numbers[i]: how many
-   numbers behind the name of record i are taken for sure. */
+   numbers behind the name of record i were tried, which are not tried again. */
 static bool add_name(struct scene_names *names, uint32_t *numbers, const char *own)
 {
     uint32_t index = names->count, first = SCENE_NONE, taken;

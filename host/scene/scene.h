@@ -148,7 +148,7 @@ struct scene_node {
     double translation[3], rotation[4], scale[3]; /* quaternion x, y, z, w */
 };
 
-/* Its matrix to the space of its parent. */
+/* The matrix from the node to the space of its parent. */
 static inline struct affine scene_node_matrix(const struct scene_node *node)
 {
     return node->has_matrix ? node->matrix

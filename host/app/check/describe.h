@@ -1,4 +1,4 @@
-/* What a drawing shows, and the entry of a golden file that is made of it. */
+/* Reads from a drawing what it shows, and makes the entry of a golden file of it. */
 #ifndef APP_CHECK_DESCRIBE_H
 #define APP_CHECK_DESCRIBE_H
 
