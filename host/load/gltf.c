@@ -12,6 +12,7 @@
 #include "load/gltf_geometry.h"
 #include "load/gltf_json.h"
 #include "load/gltf_nodes.h"
+#include "load/texture_ahead.h"
 #include "scene/afford.h"
 
 enum {
@@ -225,6 +226,7 @@ static whit_result allocate(struct gltf *gltf)
 
 static void finish(struct gltf *gltf)
 {
+    load_textures_end(gltf->scene);
     scene_give_back(gltf->scene, gltf->counted_bytes);
     for (uint32_t i = 0; i < gltf->buffer_count; i++)
         free(gltf->buffers[i].owned);

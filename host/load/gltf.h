@@ -43,6 +43,8 @@ struct gltf {
     uint32_t buffer_count, image_count, material_count, mesh_count, node_count, order_count;
     uint32_t ignored_count, ignored_capacity;
     uint32_t default_material; /* SCENE_NONE until needed */
+    bool only_names; /* textures are not loaded, but their pictures named for load_textures_ahead;
+                        textures[i] is 0 once image i was named */
 };
 
 /* gltf_material.c, gltf_texture.c, gltf_animation.c */

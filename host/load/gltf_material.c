@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "load/gltf.h"
 #include "load/gltf_json.h"
+#include "load/texture_ahead.h"
 
 /* One material while it is read. */
 struct reading {
@@ -293,11 +294,32 @@ static whit_result read_material(struct gltf *gltf, uint32_t index, struct scene
     }
     /* A refracting surface needs both sides: rays leave it through the faces that they enter by. */
     out->one_sided = !out->two_sided && !(out->transmission[0] > 0);
-    return count_ignored(&reading, index) ? WHIT_OK : WHIT_ERROR_MEMORY;
+    return gltf->only_names || count_ignored(&reading, index) ? WHIT_OK : WHIT_ERROR_MEMORY;
+}
+
+/* Decodes the pictures of all materials at once. */
+static whit_result decode_pictures(struct gltf *gltf)
+{
+    whit_result result = WHIT_OK;
+    gltf->only_names = true;
+    for (uint32_t i = 0; result == WHIT_OK && i < gltf->material_count; i++) {
+        struct scene_material material = {0};
+        result = read_material(gltf, i, &material);
+        scene_material_finish(&material);
+    }
+    gltf->only_names = false;
+    for (uint32_t i = 0; i < gltf->image_count; i++)
+        gltf->textures[i] = SCENE_NONE;
+    if (result == WHIT_OK)
+        load_textures_ahead(gltf->scene, gltf->request->params);
+    return result;
 }
 
 whit_result gltf_load_materials(struct gltf *gltf)
 {
+    whit_result decoded = decode_pictures(gltf);
+    if (decoded != WHIT_OK)
+        return decoded;
     for (uint32_t i = 0; i < gltf->material_count; i++) {
         struct scene_material material = {0};
         whit_result result = read_material(gltf, i, &material);

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "load/gltf_buffer.h"
 #include "load/gltf_json.h"
-#include "load/picture.h"
+#include "load/texture_ahead.h"
 
 /* --- images --------------------------------------------------------------------------------- */
 
@@ -25,6 +25,11 @@ static whit_result load_file_image(struct gltf *gltf, const char *uri, bool visi
     free(name);
     if (!path)
         return WHIT_ERROR_MEMORY;
+    if (gltf->only_names) {
+        load_texture_soon(gltf->scene, path, NULL, 0, gltf->request->params);
+        free(path);
+        return WHIT_OK;
+    }
     whit_result result = WHIT_OK;
     /* A missing image becomes magenta where it is the visible colour; for other slots the material
        goes without a texture. */
@@ -44,8 +49,12 @@ static whit_result load_held_image(struct gltf *gltf, uint32_t index, const uint
     char *name = string_format("%s#images[%u]", gltf->request->path, index);
     if (!name)
         return WHIT_ERROR_MEMORY;
-    whit_result result =
-        load_texture(gltf->scene, name, data, size_bytes, gltf->request->params, texture, NULL);
+    whit_result result = WHIT_OK;
+    if (gltf->only_names)
+        load_texture_soon(gltf->scene, name, data, size_bytes, gltf->request->params);
+    else
+        result =
+            load_texture(gltf->scene, name, data, size_bytes, gltf->request->params, texture, NULL);
     free(name);
     return result;
 }
@@ -85,7 +94,7 @@ static whit_result load_image(struct gltf *gltf, uint32_t index, bool visible, u
     if (is_file_uri(uri))
         return load_file_image(gltf, uri, visible, texture);
     if (uri)
-        return load_data_image(gltf, index, uri, visible, texture);
+        return gltf->only_names ? WHIT_OK : load_data_image(gltf, index, uri, visible, texture);
     if (view == SCENE_NONE) {
         gltf_fail(gltf, &at, "has neither uri nor bufferView");
         return WHIT_ERROR_INPUT;
@@ -169,6 +178,8 @@ whit_result gltf_texture_use(struct gltf *gltf, const json_t *in, const struct g
         !read_sampler(gltf, sampler, out))
         return WHIT_ERROR_INPUT;
     if (image == SCENE_NONE || uv_set > 1) {
+        if (gltf->only_names)
+            return WHIT_OK;
         scene_note(gltf->scene, SCENE_NOTE_WARNING, "%s: %s: %s, it is left out",
                    path_name(gltf->request->path), place.text,
                    image == SCENE_NONE ? "the texture has no picture that whit can read"
@@ -180,6 +191,8 @@ whit_result gltf_texture_use(struct gltf *gltf, const json_t *in, const struct g
         whit_result result = load_image(gltf, image, visible, &gltf->textures[image]);
         if (result != WHIT_OK)
             return result;
+        if (gltf->only_names)
+            gltf->textures[image] = 0;
     }
     out->texture = gltf->textures[image];
     return WHIT_OK;

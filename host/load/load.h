@@ -40,13 +40,6 @@ WHIT_CHECK whit_result load_scene(const whit_log *log, const char *path,
 WHIT_CHECK whit_result load_scene_file(struct scene *scene, const char *path,
                                        const whit_load_params *params);
 
-/* Adds an 8-bit texture from a file, or from memory (`data` non-NULL; `path` is then only its
-   name). A file that was loaded before gives the same index again. If it cannot be read, a warning
-   is noted and *index is a 1x1 magenta texture; but if `reason` is non-NULL, nothing is noted or
-   added, *reason says why, and the result is WHIT_ERROR_INPUT. */
-WHIT_CHECK whit_result load_texture(struct scene *scene, const char *path, const uint8_t *data,
-                                    size_t size_bytes, const whit_load_params *params,
-                                    uint32_t *index, const char **reason);
 /* Reads a Radiance .hdr, .exr, .pfm or 8-bit picture (sRGB) into scene->environment. */
 WHIT_CHECK whit_result load_environment(struct scene *scene, const char *path,
                                         const whit_load_params *params);

@@ -12,9 +12,10 @@
 #include "load/cut.h"
 #include "load/model.h"
 #include "load/model_mesh.h"
+#include "load/mtl_material.h"
 #include "load/obj.h"
-#include "load/picture.h"
 #include "load/ply.h"
+#include "load/texture_ahead.h"
 
 /* A model larger than this is refused before it is read. */
 #define MODEL_LIMIT (UINT64_C(4) << 30)
@@ -188,6 +189,22 @@ static void paint_colors(const struct import_block *block, const struct ply_pain
     }
 }
 
+/* Decodes the pictures of all materials that the block uses at once. */
+static void decode_pictures(struct scene *scene, const struct model_request *request,
+                            const struct import_block *block, const struct mtl_library *library)
+{
+    bool *named = array_alloc_zeroed(library->count, sizeof *named);
+    for (uint32_t i = 0; named && i < block->part_count; i++) {
+        const struct mtl_entry *entry = mtl_find(library, block->parts[i].material);
+        if (!entry || named[entry - library->entries])
+            continue;
+        named[entry - library->entries] = true;
+        mtl_name_pictures(scene, entry, request->params);
+    }
+    free(named);
+    load_textures_ahead(scene, request->params);
+}
+
 /* Adds the whole block as one mesh with one instance, so that the file has a single tree. */
 static whit_result add_block(struct scene *scene, const struct model_request *request,
                              const struct import_block *block, const struct model_file *file)
@@ -196,6 +213,8 @@ static whit_result add_block(struct scene *scene, const struct model_request *re
     struct palette palette = {.library = &file->library, .texture = file->paint.texture};
     uint32_t *materials = array_alloc(block->part_count, sizeof *materials);
     whit_result result = materials ? WHIT_OK : WHIT_ERROR_MEMORY;
+    if (result == WHIT_OK)
+        decode_pictures(scene, request, block, &file->library);
     for (uint32_t i = 0; result == WHIT_OK && i < block->part_count; i++)
         result = find_material(scene, request, &palette, &block->parts[i], &materials[i]);
     uint32_t mesh = SCENE_NONE;
@@ -205,6 +224,7 @@ static whit_result add_block(struct scene *scene, const struct model_request *re
                                 file->kind != IMPORT_OBJ, &mesh);
     if (result == WHIT_OK)
         result = add_instance(scene, name, mesh, request->parent);
+    load_textures_end(scene);
     key_table_finish(&palette.indices);
     free(materials);
     return result;

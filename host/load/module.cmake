@@ -4,7 +4,7 @@ whit_module(load
     gltf_accessor.c gltf_texture.c gltf_material.c gltf_geometry.c gltf_draco.c gltf_nodes.c
     gltf_animation.c gltf_skin.c
     scene_file.c scene_cameras.c scene_reader.c scene_materials.c scene_objects.c scene_shapes.c scene_models.c
-    scene_range.c scene_transform.c scene_animation.c texture.c environment.c picture.c jpeg.c
+    scene_range.c scene_transform.c scene_animation.c texture.c texture_ahead.c environment.c picture.c jpeg.c
   LINK whit_base whit_image whit_scene assimp::assimp PkgConfig::JANSSON JPEG::JPEG
     PkgConfig::STB)
 

@@ -57,9 +57,4 @@ void mtl_finish(struct mtl_library *library);
 /* The first entry of that name, or NULL. */
 const struct mtl_entry *mtl_find(const struct mtl_library *library, const char *name);
 
-/* Converts the entry to a material, and loads its textures; release *out with
-   scene_material_finish. */
-WHIT_CHECK whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry,
-                                    const whit_load_params *params, struct scene_material *out);
-
 #endif

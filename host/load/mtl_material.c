@@ -23,8 +23,8 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "load/mtl.h"
-#include "load/picture.h"
+#include "load/mtl_material.h"
+#include "load/texture_ahead.h"
 #include "scene/afford.h"
 
 enum { ALPHA_HALF = 128 };
@@ -361,6 +361,18 @@ static void note_ambient_map(struct scene *scene, const struct mtl_entry *entry)
         scene_note(scene, SCENE_NOTE_WARNING,
                    "%s:%u: `%s` of map_Ka was ignored: ambient light takes map_Kd",
                    path_name(entry->file), ambient->line, text_token(ambient->file).text);
+}
+
+void mtl_name_pictures(struct scene *scene, const struct mtl_entry *entry,
+                       const whit_load_params *params)
+{
+    for (int i = MTL_MAP_KD; i < MTL_MAP_COUNT; ++i) {
+        const char *file = i == MTL_MAP_NS ? NULL : entry->maps[i].file; /* most are not read */
+        char *path = file ? picture_find_named(&scene->roots, entry->file, file) : NULL;
+        if (path)
+            load_texture_soon(scene, path, NULL, 0, params);
+        free(path);
+    }
 }
 
 whit_result mtl_material(struct scene *scene, const struct mtl_entry *entry,

@@ -10,6 +10,7 @@
 #include "base/vec.h"
 #include "image/image.h"
 #include "load/scene_materials.h"
+#include "load/texture.h"
 
 static const char *const common_keys[] = {"emission",
                                           "texture",

@@ -7,8 +7,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/text.h"
-#include "load/load.h"
-#include "load/picture.h"
+#include "load/texture_ahead.h"
 #include "scene/afford.h"
 
 #define FILE_BYTES_MAX ((uint64_t)1 << 29)
@@ -16,43 +15,27 @@
 
 enum { BY_FILE = 1, BY_BYTES };
 
-/* Identifies a picture that may have several names, by its file's inode or by a hash of its bytes.
-   Keys are in one table with names, which never equal a key, since they have no zero bytes. */
-struct key {
-    uint64_t kind, damaged, limit, words[4];
-};
-
 static uint32_t limit_of(const whit_load_params *params)
 {
     return params && params->texture_limit ? params->texture_limit : SIDE_MAX;
 }
 
-static bool key_of_file(const char *path, const whit_load_params *params, struct key *key)
+void texture_key_file(const char *path, const whit_load_params *params,
+                      struct texture_source *source)
 {
     struct stat info;
-    if (stat(path, &info) != 0)
-        return false;
-    *key = (struct key){BY_FILE,
-                        0,
-                        limit_of(params),
-                        {info.st_dev, info.st_ino, (uint64_t)info.st_size,
-                         (uint64_t)info.st_mtim.tv_sec ^ (uint64_t)info.st_mtim.tv_nsec << 34}};
-    return true;
-}
-
-static struct key key_of_bytes(const uint8_t *data, size_t size_bytes,
-                               const whit_load_params *params)
-{
-    return (struct key){
-        BY_BYTES,
-        0,
-        limit_of(params),
-        {size_bytes, hash_bytes(HASH_START, data, size_bytes), hash_bytes(1, data, size_bytes)}};
+    if (stat(path, &info) == 0)
+        source->keys[source->key_count++] = (struct texture_key){
+            BY_FILE,
+            0,
+            limit_of(params),
+            {info.st_dev, info.st_ino, (uint64_t)info.st_size,
+             (uint64_t)info.st_mtim.tv_sec ^ (uint64_t)info.st_mtim.tv_nsec << 34}};
 }
 
 /* If a texture with this key exists, makes it also the texture of `name`. `damaged_too`: finds also
    pictures that could not be decoded, whose texture is magenta. */
-static bool share(struct scene *scene, const char *name, struct key key, bool damaged_too,
+static bool share(struct scene *scene, const char *name, struct texture_key key, bool damaged_too,
                   uint32_t *index)
 {
     bool found = key_table_find(&scene->texture_keys, &key, sizeof key, index);
@@ -68,16 +51,6 @@ static bool share(struct scene *scene, const char *name, struct key key, bool da
         scene->lacks_memory |= !key_table_add(&scene->texture_keys, name, strlen(name), *index);
     return found;
 }
-
-/* The encoded bytes of a texture, and the keys under which it will be found. */
-struct source {
-    const uint8_t *data;
-    uint8_t *owned;
-    size_t size_bytes;
-    struct key keys[2];
-    uint32_t key_count;
-    bool too_large; /* exceeds the scene's memory limit, which was logged */
-};
 
 /* Keeps the reason of an error that is logged about `path`. */
 struct unread {
@@ -97,27 +70,40 @@ static void keep_reason(void *user, whit_log_level level, const char *message)
              named ? message + length + 2 : "it cannot be read");
 }
 
-/* Reads the file without logging: a missing texture is a warning of the scene, not an error. */
-static whit_result read_source(struct scene *scene, const char *path, struct source *source,
-                               char reason[FOREIGN_REASON_BYTES])
+whit_result texture_read(const struct scene *scene, const char *path,
+                         const whit_load_params *params, struct texture_source *source,
+                         char reason[FOREIGN_REASON_BYTES])
 {
     struct unread unread = {path, reason};
     const whit_log silent = {.fn = keep_reason, .user = &unread, .level = WHIT_LOG_ERROR};
-    whit_result result = file_read(&silent, &scene->roots, path, FILE_BYTES_MAX, &source->owned,
-                                   &source->size_bytes);
-    scene->file_bytes += source->size_bytes;
-    source->data = source->owned;
-    return result;
+    if (!source->data) {
+        whit_result result = file_read(&silent, &scene->roots, path, FILE_BYTES_MAX, &source->owned,
+                                       &source->size_bytes);
+        if (result != WHIT_OK)
+            return result;
+        source->data = source->owned;
+    }
+    source->keys[source->key_count++] = (struct texture_key){
+        BY_BYTES,
+        0,
+        limit_of(params),
+        {source->size_bytes, hash_bytes(HASH_START, source->data, source->size_bytes),
+         hash_bytes(1, source->data, source->size_bytes)}};
+    source->hashed = true;
+    return WHIT_OK;
 }
 
 /* Decodes the picture, unless its header states more pixels than the memory limit allows. */
 static whit_result decode_source(struct scene *scene, const char *name,
-                                 const struct foreign_params *foreign, struct source *source,
-                                 struct picture *picture, char reason[FOREIGN_REASON_BYTES])
+                                 const struct foreign_params *foreign,
+                                 struct texture_source *source, struct picture *picture,
+                                 char reason[FOREIGN_REASON_BYTES])
 {
     uint64_t pixels_max = scene_room(scene) / scene_texture_cost(1, 1);
-    whit_result result = picture_read(&scene->log, foreign, pixels_max, source->data,
-                                      source->size_bytes, picture, reason);
+    whit_result result;
+    if (!texture_take_picture(scene, source, pixels_max, picture, reason, &result))
+        result = picture_read(&scene->log, foreign, pixels_max, source->data, source->size_bytes,
+                              picture, reason);
     uint64_t pixels = (uint64_t)picture->width * picture->height;
     if (result != WHIT_OK && (result != WHIT_ERROR_INPUT || pixels <= pixels_max))
         return result;
@@ -129,7 +115,7 @@ static whit_result decode_source(struct scene *scene, const char *name,
 
 /* Decodes a picture; if it is a texture of the scene already, sets *index to that instead. */
 static whit_result decode(struct scene *scene, const char *name, const whit_load_params *params,
-                          bool damaged_too, struct source *source, struct picture *picture,
+                          bool damaged_too, struct texture_source *source, struct picture *picture,
                           uint32_t *index, char reason[FOREIGN_REASON_BYTES])
 {
     const struct foreign_params foreign = load_foreign(params);
@@ -139,19 +125,18 @@ static whit_result decode(struct scene *scene, const char *name, const whit_load
             snprintf(reason, FOREIGN_REASON_BYTES, "%s", why_not);
             return WHIT_ERROR_INPUT;
         }
-        if (key_of_file(name, params, &source->keys[0])) {
-            source->key_count++;
-            if (share(scene, name, source->keys[0], damaged_too, index))
-                return WHIT_OK;
-        }
-        whit_result result = read_source(scene, name, source, reason);
-        if (result != WHIT_OK)
-            return result;
+        texture_key_file(name, params, source);
+        if (source->key_count > 0 && share(scene, name, source->keys[0], damaged_too, index))
+            return WHIT_OK;
+        texture_take_source(scene, source);
     }
-    struct key key = key_of_bytes(source->data, source->size_bytes, params);
-    source->keys[source->key_count++] = key;
-    if (share(scene, name, key, damaged_too, index))
-        return WHIT_OK;
+    bool is_file = !source->data || source->owned;
+    whit_result result =
+        source->hashed ? WHIT_OK : texture_read(scene, name, params, source, reason);
+    scene->file_bytes += is_file ? source->size_bytes : 0;
+    if (result != WHIT_OK ||
+        share(scene, name, source->keys[source->key_count - 1], damaged_too, index))
+        return result;
     return decode_source(scene, name, &foreign, source, picture, reason);
 }
 
@@ -180,7 +165,7 @@ static bool shrink(struct scene *scene, const char *name, const whit_load_params
 }
 
 static bool add(struct scene *scene, char *name, const struct picture *picture, bool damaged,
-                struct source *source, uint32_t *index)
+                struct texture_source *source, uint32_t *index)
 {
     *index = scene_add_texture(scene, (struct scene_texture){name, picture->width, picture->height,
                                                              picture->rgba, picture->mapped_bytes});
@@ -198,7 +183,7 @@ whit_result load_texture(struct scene *scene, const char *path, const uint8_t *d
 {
     static _Thread_local char why[FOREIGN_REASON_BYTES]; /* *reason points here after the call */
     struct picture picture = {0};
-    struct source source = {.data = data, .size_bytes = size_bytes};
+    struct texture_source source = {.data = data, .size_bytes = size_bytes};
     char *name = data ? string_copy(path) : picture_find(&scene->roots, path);
     whit_result result = WHIT_ERROR_MEMORY;
     bool said = false;

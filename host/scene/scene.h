@@ -288,6 +288,7 @@ struct scene {
     uint64_t file_bytes;                   /* of all files read */
     uint64_t memory_limit, memory_taken;   /* see afford.h; 0: no limit */
     struct key_table texture_keys;         /* texture index by name, or by a loader's own key */
+    struct texture_ahead *ahead;           /* pictures decoded ahead, while a model is loaded */
     struct roots roots;                    /* folders in which the scene's files may name others */
     uint64_t hash;                         /* of everything above; set by scene_freeze */
     bool is_model;                         /* by another program: may need more lights */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "load/mtl.h"
+#include "load/mtl_material.h"
 #include "scene/scene.h"
 
 static void make_materials(struct scene *scene, const struct mtl_library *library)

@@ -10,7 +10,7 @@
 #include "base/sandbox.h"
 #include "image/formats.h"
 #include "load/jpeg.h"
-#include "load/picture.h"
+#include "load/texture.h"
 #include "stb_write_fixture.h"
 #include "unit.h"
 

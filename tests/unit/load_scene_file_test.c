@@ -1,5 +1,5 @@
 /* whit's own scene files: their meaning, and the places that errors name. */
-#include "load/load.h"
+#include "load/texture.h"
 #include "load_model_fixture.h"
 #include "scene/pose.h"
 

@@ -1,11 +1,14 @@
 /* Equal pictures are decoded and kept once, whatever their names. */
 #include "load_model_fixture.h"
 
+#include <stdatomic.h>
+
 #include "../wrapped.h"
-#include "load/picture.h"
+#include "load/texture_ahead.h"
 #include "unit.h"
 
-static uint32_t decoded, file_reads;
+static atomic_uint decoded;
+static uint32_t file_reads, taken;
 
 WRAPPED(whit_result, picture_read, const whit_log *log, const struct foreign_params *params,
         uint64_t pixels_max, const uint8_t *data, size_t size_bytes, struct picture *out,
@@ -25,9 +28,24 @@ WRAPPED(whit_result, file_read, const whit_log *log, const struct roots *roots, 
     return __real_file_read(log, roots, path, limit_bytes, data, size_bytes);
 }
 
+/* Pictures are decoded ahead as on two cores, wherever the test runs. */
+WRAPPED(uint32_t, threads_available, void)
+{
+    return 2;
+}
+
+WRAPPED(bool, texture_take_picture, struct scene *scene, const struct texture_source *source,
+        uint64_t pixels_max, struct picture *out, char reason[FOREIGN_REASON_BYTES],
+        whit_result *result)
+{
+    bool took = __real_texture_take_picture(scene, source, pixels_max, out, reason, result);
+    taken += took;
+    return took;
+}
+
 static int begin(void **state)
 {
-    decoded = file_reads = 0;
+    decoded = file_reads = taken = 0;
     return fixture_begin(state);
 }
 
@@ -184,4 +202,74 @@ TEST_IN(textures_too_large_are_not_decoded, begin, fixture_end)
     fixture.scene->memory_limit = 18;
     assert_int_equal(load_texture(fixture.scene, "a", tga, sizeof tga, NULL, &index, NULL),
                      WHIT_OK);
+}
+
+/* Writes `count` pictures of different bytes: 0.tga, 1.tga and so on. */
+static void put_pictures(uint32_t count)
+{
+    uint8_t other[sizeof tga];
+    char name[16];
+    memcpy(other, tga, sizeof tga);
+    for (uint32_t i = 0; i < count; i++) {
+        other[sizeof tga - 1]++;
+        snprintf(name, sizeof name, "%u.tga", i);
+        put_data(name, other, sizeof other);
+    }
+}
+
+/* Pictures that a material reads are decoded ahead, damaged ones too, but for data: URIs. */
+TEST_IN(pictures_are_decoded_ahead, begin, fixture_end)
+{
+    static const char *const images[] = {"{'uri':'0.tga'}", "{'uri':'1.tga'}", "{'bufferView':0}",
+                                         "{'uri':'damaged.tga'}",
+                                         "{'uri':'data:;base64,AAACAAAAAAAAAAAAAgABABggChQeFCg8'}"};
+    put_pictures(2);
+    put_data("damaged.tga", tga, 12);
+    assert_int_equal(fixture_load(write_gltf(images, 5)), WHIT_OK);
+    assert_int_equal(fixture.scene->texture_count, 5);
+    assert_int_equal(decoded, 5);
+    assert_int_equal(taken, 4);
+    assert_int_equal(file_reads, 4);
+    assert_true(fixture_noted("texture `damaged.tga`: "));
+    assert_null(fixture.scene->ahead);
+}
+
+TEST_IN(pictures_that_nothing_reads_are_not_decoded, begin, fixture_end)
+{
+    put_pictures(3);
+    const char *path = put_json(
+        "a.gltf", "{'asset':{'version':'2.0'},'images':[{'uri':'0.tga'},{'uri':'1.tga'},{'uri':"
+                  "'2.tga'}],'textures':[{'source':0},{'source':1},{'source':2}],'materials':[{"
+                  "'occlusionTexture':{'index':0},'emissiveTexture':{'index':1},'normalTexture':{"
+                  "'index':2}}]}");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    assert_int_equal(decoded, 2);
+    assert_int_equal(taken, 2);
+}
+
+TEST_IN(pictures_of_an_obj_are_decoded_ahead, begin, fixture_end)
+{
+    put_pictures(4);
+    put_text("a.mtl", "newmtl one\nmap_Kd 0.tga\nmap_Ks 1.tga\nnewmtl two\nmap_Kd 2.tga\n"
+                      "newmtl unused\nmap_Kd 3.tga\n");
+    const char *path =
+        put_text("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl one\n"
+                          "f 1/1 2/1 3/1\nusemtl two\nf 3/1 2/1 1/1\n");
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    assert_int_equal(fixture.scene->texture_count, 3);
+    assert_int_equal(decoded, 3);
+    assert_int_equal(taken, 3);
+}
+
+/* Room for four texels: of two pictures of two, the second gets a share of one, and is decoded when
+   it is needed. With less room it is the one that is too large. */
+TEST_IN(pictures_ahead_keep_the_memory_limit, begin, fixture_end)
+{
+    static const char *const images[] = {"{'uri':'0.tga'}", "{'uri':'1.tga'}"};
+    put_pictures(2);
+    const char *path = write_gltf(images, 2);
+    fixture.scene->memory_limit = fixture.scene->memory_taken + 36 + 24; /* and the buffer */
+    assert_int_equal(fixture_load(path), WHIT_OK);
+    assert_int_equal(decoded, 2);
+    assert_int_equal(taken, 1);
 }
