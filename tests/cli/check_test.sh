@@ -73,6 +73,9 @@ expect 0 "its report" check 's\x1.whit' --accept-from backslash.json --accept cu
 sed 's/ rays 3072/ rays 9999/' ci/report.json >ci/second.json
 refuse 2 "two reports that differ" "second.json: cube: another report says something else" \
     check looks.whit --accept-from ci --reason x
+sed -E 's/(case|n) cube (of|ids|parts)/\1 moon \2/g' ci/report.json >moon.json
+refuse 2 "lines of another case" "moon.json: cube: its lines of a golden are not those of this one case" \
+    check looks.whit --accept-from moon.json --reason x
 echo '{' >ci/second.json
 refuse 2 "a damaged report" "second.json:[0-9]*: " check looks.whit --accept-from ci --reason x
 echo '{}' >ci/second.json

@@ -51,6 +51,8 @@ check "not all is there" sh -c "! test -e a.$(printf %03d $last).png"
 head -c 600 one.000.png >a.000.png       # cut short
 cp one.002.exr a.001.exr                 # of another frame
 head -c -10 one.002.exr >a.002.exr        # whole but for its end
+"$WHIT" render "$SWARM" --frame 4 --size 96x72 --aa 4 --tile 1/2 -o a.004.png --ids a.004.exr -q # a part of it
+"$WHIT" render "$SWARM" --frame 5 --size 96x72 --aa 4 -o a.005.exr -q # colours
 : >a.003.png.lock                        # nobody has it
 expect 0 "it goes on" render $frames -o a.###.png --ids a.###.exr --resume --stats json
 check "what was finished is kept" jq -e ".frames.kept >= 1 and .frames.count >= 2 and .frames.kept + .frames.count == $((last + 1))" "$OUT/stdout"

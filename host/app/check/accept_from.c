@@ -22,8 +22,8 @@ static char *original(const json_t *value)
     return text;
 }
 
-/* Reads the golden lines of one case in a report. */
-static bool read_lines(struct golden *found, const char *where, const char *lines)
+/* Reads the golden lines of the case `name` in a report. */
+static bool read_lines(struct golden *found, const char *name, const char *where, const char *lines)
 {
     char *text =
         string_format("whit check golden %d, whit %s\n\n%s", GOLDEN_FORMAT, WHIT_VERSION, lines);
@@ -31,11 +31,10 @@ static bool read_lines(struct golden *found, const char *where, const char *line
         return CLI_FAIL(false, "out of memory");
     document_restore(text);
     bool read = golden_read_text(found, where, text, GOLDEN_OF_DEVICE);
-    if (read && found->count != 1)
-        cli_error("%s: its lines of a golden are not those of one case", where);
-    read = read && found->count == 1;
     free(text);
-    return read;
+    if (!read || (found->count == 1 && strcmp(found->cases[0].name, name) == 0))
+        return read;
+    return CLI_FAIL(false, "%s: its lines of a golden are not those of this one case", where);
 }
 
 /* Whether two reports have the same golden lines of a case. */
@@ -79,7 +78,7 @@ static bool take_lines(struct check *check, struct check_result *result, const c
                        const char *where)
 {
     struct golden found = {.exists = false};
-    bool read = read_lines(&found, where, lines);
+    bool read = read_lines(&found, result->item->name, where, lines);
     const char *why = read ? why_not(result, &found) : NULL;
     if (why)
         cli_error("%s: %s", where, why);

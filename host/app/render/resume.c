@@ -50,11 +50,22 @@ static bool same_recipe(const struct recipe *wanted, const whit_text *texts, uin
         if (decides(wanted->texts[i].key) && (!text || strcmp(text, wanted->texts[i].value) != 0))
             return false;
     }
-    return true;
+    /* A part has all texts of the whole picture, and one more. */
+    return recipe_text(wanted->texts, wanted->count, PART_KEY) ||
+           !recipe_text(texts, count, PART_KEY);
 }
 
-/* A damaged file is not an error: it is drawn again. */
-static bool is_finished(const struct job *job, const char *path, const struct recipe *wanted)
+static bool holds_ids(const whit_image *image)
+{
+    whit_image_info info;
+    whit_image_get_info(image, &info);
+    return info.integers;
+}
+
+/* Whether the file holds the colours, or the hit identities, of that recipe. A damaged file is not
+   an error: it is drawn again. */
+static bool is_finished(const struct job *job, const char *path, const struct recipe *wanted,
+                        bool ids)
 {
     const char *folders[SETTING_FOLDERS_MAX];
     whit_load_params load = settings_load(&job->settings, folders);
@@ -67,7 +78,8 @@ static bool is_finished(const struct job *job, const char *path, const struct re
     cli_hush(true);
     bool finished = part_load_texts(path, &load, &texts, &count) == WHIT_OK &&
                     same_recipe(wanted, texts, count) &&
-                    whit_image_load(path, &load, &cli_log, &image) == WHIT_OK;
+                    whit_image_load(path, &load, &cli_log, &image) == WHIT_OK &&
+                    holds_ids(image) == ids;
     cli_hush(false);
     whit_memory_destroy(texts);
     whit_image_destroy(image);
@@ -84,8 +96,8 @@ static whit_result find_finished(const struct job *job, const struct render_requ
                      single->output, NULL))
         return WHIT_ERROR_MEMORY;
     recipe_add_part(&wanted, &single->part, &job->settings);
-    *finished = is_finished(job, single->output, &wanted) &&
-                (!single->ids || is_finished(job, single->ids, &wanted));
+    *finished = is_finished(job, single->output, &wanted, false) &&
+                (!single->ids || is_finished(job, single->ids, &wanted, true));
     recipe_finish(&wanted);
     return job_still_wanted();
 }
