@@ -93,6 +93,8 @@ if part 1 2; then
     echo '# nothing' >nothing
     refuse 2 "no line" "nothing: there is no line in it" batch nothing
     refuse 2 "a wrong line" "wrong:2: --size \`0x72\`" batch wrong
+    printf "'$SWARM' -o x.png\n\0\n'$SWARM' -o y.png\n" >wrong
+    refuse 2 "a byte 0 between lines" "wrong: no lines: it has bytes that are 0" batch wrong
     echo "'$SWARM' -o x.png --time-limit 1" >wrong
     refuse 2 "a limit of a line" "wrong:1: --time-limit is of all lines" batch wrong
     echo "'$SWARM' -o x.png --counters" >wrong

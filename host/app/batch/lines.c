@@ -143,12 +143,12 @@ int lines_init(struct lines *lines, struct line *line)
     size_t bytes;
     whit_result result = file_read(&cli_log, NULL, lines->path, FILE_BYTES_MAX, &text, &bytes);
     lines->text = (char *)text;
+    if (result == WHIT_OK && strlen(lines->text) != bytes)
+        result = CLI_FAIL(WHIT_ERROR_INPUT, "%s: no lines: it has bytes that are 0", lines->path);
     if (result == WHIT_OK)
         result = find_places(lines);
-    if (result == WHIT_OK && lines->count == 0) {
-        cli_error("%s: there is no line in it", lines->path);
-        result = WHIT_ERROR_INPUT;
-    }
+    if (result == WHIT_OK && lines->count == 0)
+        result = CLI_FAIL(WHIT_ERROR_INPUT, "%s: there is no line in it", lines->path);
     if (result != WHIT_OK)
         return cli_exit_of(result);
     for (uint32_t i = 0; i < lines->count; ++i) {
