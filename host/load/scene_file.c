@@ -212,11 +212,7 @@ static bool read_map(struct reader *reader, const struct place *place, const jso
 static bool read_environment(struct reader *reader, const struct place *place, const json_t *value)
 {
     static const char *const keys[] = {"zenith", "horizon", "ground", "scale", NULL};
-    struct scene_environment sky = {.kind = WHIT_ENVIRONMENT_GRADIENT,
-                                    .zenith = {0.22f, 0.40f, 0.72f},
-                                    .horizon = {0.72f, 0.77f, 0.82f},
-                                    .ground = {0.52f, 0.52f, 0.52f},
-                                    .scale = {1, 1, 1}};
+    struct scene_environment sky = scene_sky;
     if (json_is_object(value) && json_object_get(value, "map"))
         return read_map(reader, place, value);
     if (json_is_object(value)) {

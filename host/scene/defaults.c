@@ -122,18 +122,18 @@ static whit_result add_key_light(struct scene *scene, const struct scene_camera 
     return scene_add_light(scene, light) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
 }
 
+const struct scene_environment scene_sky = {.kind = WHIT_ENVIRONMENT_GRADIENT,
+                                            .zenith = {0.22f, 0.40f, 0.72f},
+                                            .horizon = {0.72f, 0.77f, 0.82f},
+                                            .ground = {0.52f, 0.52f, 0.52f},
+                                            .scale = {1.0f, 1.0f, 1.0f}};
+
 static void add_environment(struct scene *scene, bool sky)
 {
-    static const struct scene_environment blue = {.kind = WHIT_ENVIRONMENT_GRADIENT,
-                                                  .zenith = {0.22f, 0.40f, 0.72f},
-                                                  .horizon = {0.72f, 0.77f, 0.82f},
-                                                  .ground = {0.52f, 0.52f, 0.52f},
-                                                  .scale = {1.0f, 1.0f, 1.0f},
-                                                  .made_by_whit = true},
-                                          black = {.kind = WHIT_ENVIRONMENT_GRADIENT,
-                                                   .scale = {1.0f, 1.0f, 1.0f},
-                                                   .made_by_whit = true};
-    scene->environment = sky ? blue : black;
+    static const struct scene_environment black = {.kind = WHIT_ENVIRONMENT_GRADIENT,
+                                                   .scale = {1.0f, 1.0f, 1.0f}};
+    scene->environment = sky ? scene_sky : black;
+    scene->environment.made_by_whit = true;
     scene_note(scene, SCENE_NOTE_INFO, "no environment in the file: %s",
                sky ? "a sky was added" : "the background is black");
 }

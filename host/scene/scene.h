@@ -243,6 +243,9 @@ struct scene_environment {
     bool made_by_whit;
 };
 
+/* defaults.c: the sky where a file states none, and of colours that a file does not state. */
+extern const struct scene_environment scene_sky;
+
 /* names.c: names of the enumerators here and in whit_scene.h, by value. The lists of alpha, wrap
    and interpolation end with NULL. */
 extern const char *const scene_model_names[],

@@ -3,6 +3,7 @@
 #ifndef HOOK_DECLARE_GLSL
 #define HOOK_DECLARE_GLSL
 
+#include "../bind/environment.glsl"
 #include "prelude.glsl"
 
 #define camera whit_camera

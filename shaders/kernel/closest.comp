@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../bind/stage.glsl"
-#include "../bind/light.glsl"
+#include "../bind/environment.glsl"
 #include "../bind/media.glsl"
 #include "../bind/packet.glsl"
 #include "../bind/probe.glsl"
