@@ -232,13 +232,16 @@ static whit_result fill(struct buffer *buffer, uint8_t byte)
             memset(buffer->mapped, byte, buffer->size_bytes);
         return WHIT_OK;
     }
+    pthread_mutex_lock(&device->transfer_lock);
     whit_result result = transfer_ready(device);
     if (result == WHIT_OK)
         result = commands_begin(device->transfer);
-    if (result != WHIT_OK)
-        return result;
-    commands_fill(device->transfer, buffer, 0, buffer->size_bytes, 0x01010101u * byte);
-    return commands_run(device->transfer);
+    if (result == WHIT_OK) {
+        commands_fill(device->transfer, buffer, 0, buffer->size_bytes, 0x01010101u * byte);
+        result = commands_run(device->transfer);
+    }
+    pthread_mutex_unlock(&device->transfer_lock);
+    return result;
 }
 
 whit_result buffer_create(struct device *device, uint64_t size_bytes, uint32_t uses,
@@ -362,6 +365,7 @@ whit_result buffer_write(struct buffer *buffer, uint64_t offset_bytes, const voi
         copy_in(buffer->mapped + offset_bytes, from, size_bytes);
         return WHIT_OK;
     }
+    pthread_mutex_lock(&device->transfer_lock);
     result = staging_ready(device);
     for (uint64_t done = 0; result == WHIT_OK && done < size_bytes;) {
         uint64_t part = size_bytes - done < STAGING_BYTES ? size_bytes - done : STAGING_BYTES;
@@ -373,6 +377,7 @@ whit_result buffer_write(struct buffer *buffer, uint64_t offset_bytes, const voi
         result = commands_run(device->transfer);
         done += part;
     }
+    pthread_mutex_unlock(&device->transfer_lock);
     return result;
 }
 
@@ -396,6 +401,7 @@ whit_result buffer_read(struct buffer *buffer, uint64_t offset_bytes, void *data
         memcpy(to, from + offset_bytes, size_bytes);
         return WHIT_OK;
     }
+    pthread_mutex_lock(&device->transfer_lock);
     result = staging_ready(device);
     for (uint64_t done = 0; result == WHIT_OK && done < size_bytes;) {
         uint64_t part = size_bytes - done < STAGING_BYTES ? size_bytes - done : STAGING_BYTES;
@@ -408,5 +414,6 @@ whit_result buffer_read(struct buffer *buffer, uint64_t offset_bytes, void *data
             memcpy(to + done, device->staging->mapped, part);
         done += part;
     }
+    pthread_mutex_unlock(&device->transfer_lock);
     return result;
 }

@@ -340,6 +340,7 @@ whit_result commands_submit_between(struct commands *commands, VkSemaphore wait,
     if (device->end_label)
         LAYERS_BESIDE(device->end_label(commands->vk));
     commands->state = COMMANDS_IDLE;
+    pthread_mutex_lock(&device->queue_lock);
     VK_TRY(device, vkEndCommandBuffer(commands->vk));
     VK_TRY(device, vkResetFences(device->vk, 1, &commands->fence));
     const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
@@ -356,6 +357,7 @@ whit_result commands_submit_between(struct commands *commands, VkSemaphore wait,
     VK_TRY(device, vkQueueSubmit(device->queue, 1, &info, commands->fence));
     commands->state = COMMANDS_IN_FLIGHT;
 fail:
+    pthread_mutex_unlock(&device->queue_lock);
     return result;
 }
 
@@ -403,7 +405,9 @@ whit_result commands_wait(struct commands *commands, double timeout_ms)
 fail:
     if (result != WHIT_ERROR_TIME_LIMIT) {
         /* The caller may now destroy what these commands use, so the device must be idle. */
+        pthread_mutex_lock(&device->queue_lock);
         (void)LAYERS_BESIDE(vkDeviceWaitIdle(device->vk));
+        pthread_mutex_unlock(&device->queue_lock);
         commands->state = COMMANDS_IDLE;
     }
     return result;

@@ -129,6 +129,8 @@ whit_result device_create(const whit_log *log, const whit_device_params *params,
     if (!device)
         return log_failure(log, WHIT_ERROR_MEMORY, "out of memory for a device");
     pthread_mutex_init(&device->kept_lock, NULL);
+    pthread_mutex_init(&device->queue_lock, NULL);
+    pthread_mutex_init(&device->transfer_lock, NULL);
     if (log)
         device->log = log_or_silence(log);
     const char *validation = getenv("WHIT_VALIDATION");
@@ -182,6 +184,8 @@ void device_destroy(struct device *device)
     instance_destroy(device);
     child_release_forks();
     pthread_mutex_destroy(&device->kept_lock);
+    pthread_mutex_destroy(&device->queue_lock);
+    pthread_mutex_destroy(&device->transfer_lock);
     free(device);
 }
 

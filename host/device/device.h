@@ -1,7 +1,7 @@
 /* All of Vulkan: devices, buffers, compute pipelines, submission; windows in swapchain.h. No Vulkan
    type leaves this module, only handles as pointers, and nothing here knows what a triangle is.
-   Vulkan 1.2; without a window compute only, and no extension required. Not thread-safe: one thread
-   per device at a time. */
+   Vulkan 1.2; without a window compute only, and no extension required. Threads may share a device
+   that shows nothing; each of its buffers, pipelines and commands is used by one at a time. */
 #ifndef DEVICE_DEVICE_H
 #define DEVICE_DEVICE_H
 

@@ -57,7 +57,8 @@ struct device {
     struct device_limits limits;
 
     VkDevice vk;
-    VkQueue queue;
+    VkQueue queue; /* a device that shows pictures is used by one thread */
+    pthread_mutex_t queue_lock;
     uint32_t queue_family;
     uint64_t timestamp_mask; /* 0: the queue has none */
     VkPipelineCache cache;
@@ -76,7 +77,8 @@ struct device {
     struct pipeline *kept; /* the youngest first */
     uint32_t kept_count;
 
-    struct buffer *staging; /* both made when first needed */
+    pthread_mutex_t transfer_lock; /* of the next two, which are made when first needed */
+    struct buffer *staging;
     struct commands *transfer;
 };
 

@@ -19,10 +19,11 @@
 
    Threads: different handles may be used from different threads; one handle from one at a time. An
    accel and all renderers and references made from it count as one handle, for its trees stand at
-   one time of the animation and are moved to that of the renderer that needs them. A `cancel` flag
-   may be set from anywhere, a signal handler included. Callbacks return: an exception or longjmp
-   that leaves one leaves locks held, that of messages among them, and the next call may wait
-   forever.
+   one time of the animation and are moved to that of the renderer that needs them. Renderers of
+   several accels may share a scene and a device. A `cancel` flag may be set from anywhere, a signal
+   handler included. Callbacks return: an exception or longjmp that leaves one leaves locks held,
+   that of messages among them, and the next call may wait forever. One for messages calls nothing
+   that logs, as it would wait for itself.
 
    fork(): in the child, the parent's devices and what was made from them can be neither used nor
    destroyed, since threads of their drivers are missing there. It creates its own, and ends by

@@ -1,4 +1,8 @@
+#include <sched.h>
+#include <stdatomic.h>
+
 #include "../wrapped.h"
+#include "base/threads.h"
 #include "device/vulkan.h"
 #include "one_device_fixture.h"
 #include "unit.h"
@@ -166,6 +170,75 @@ TEST(destroy_accepts_null)
     pipeline_destroy(NULL);
     binding_set_destroy(NULL);
     commands_destroy(NULL);
+}
+
+/* Two threads were in a call that Vulkan allows one at a time. */
+static atomic_bool overlapped;
+
+WRAPPED(VkResult, vkQueueSubmit, VkQueue queue, uint32_t count, const VkSubmitInfo *infos,
+        VkFence fence)
+{
+    static atomic_flag inside = ATOMIC_FLAG_INIT;
+    if (atomic_flag_test_and_set(&inside))
+        overlapped = true;
+    sched_yield();
+    VkResult result = __real_vkQueueSubmit(queue, count, infos, fence);
+    atomic_flag_clear(&inside);
+    return result;
+}
+
+enum { USERS = 3, ROUNDS = 100, WORDS = 4096 };
+
+struct user {
+    uint32_t mark;
+    bool kept; /* all words were read back as they were written */
+    struct commands *commands;
+    struct thread *thread;
+};
+
+/* Writes a buffer of its own, then its second half by its own commands. */
+static bool write_and_read(struct user *user, uint32_t round)
+{
+    static const uint64_t half_bytes = WORDS / 2 * sizeof(uint32_t);
+    uint32_t words[WORDS], back[WORDS];
+    own_buffer *buffer = NULL;
+    for (uint32_t i = 0; i < WORDS; ++i)
+        words[i] = user->mark + round + (i < WORDS / 2 ? i : 0);
+    if (buffer_create(device, sizeof words, BUFFER_STORAGE | BUFFER_ZEROED, "shared", &buffer) !=
+            WHIT_OK ||
+        buffer_write(buffer, 0, words, half_bytes) != WHIT_OK ||
+        commands_begin(user->commands) != WHIT_OK)
+        return false;
+    commands_fill(user->commands, buffer, half_bytes, half_bytes, user->mark + round);
+    return commands_run(user->commands) == WHIT_OK &&
+           buffer_read(buffer, 0, back, sizeof back) == WHIT_OK &&
+           memcmp(words, back, sizeof words) == 0;
+}
+
+static void use(void *context)
+{
+    struct user *user = context;
+    user->kept = true;
+    for (uint32_t round = 0; user->kept && round < ROUNDS; ++round)
+        user->kept = write_and_read(user, round);
+}
+
+TEST(threads_share_a_device)
+{
+    struct user users[USERS] = {{0}};
+    for (uint32_t i = 0; i < USERS; ++i) {
+        users[i].mark = i << 24;
+        users[i].commands = commands_make(device);
+        users[i].thread = thread_start(use, &users[i]);
+        assert_non_null(users[i].thread);
+    }
+    for (uint32_t i = 0; i < USERS; ++i) {
+        thread_join(users[i].thread);
+        commands_destroy(users[i].commands);
+    }
+    for (uint32_t i = 0; i < USERS; ++i)
+        assert_true(users[i].kept);
+    assert_false(overlapped);
 }
 
 int main(void)
