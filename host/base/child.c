@@ -10,7 +10,6 @@
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -65,18 +64,17 @@ static void limit(__rlimit_resource_t resource, uint64_t value)
     setrlimit(resource, &limits);
 }
 
-/* The address space that is mapped already, by this process with its libraries and drivers: it does
-   not count against the child. */
+/* The address space that this process has mapped already, with its libraries and drivers: it does
+   not count against the child. The child asks, as other threads of its parent go on mapping. */
 static uint64_t mapped_bytes(void)
 {
-    unsigned long pages = 0;
-    FILE *stream = fopen("/proc/self/statm", "re");
-    if (!stream)
+    char text[32] = "";
+    int fd = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+    if (fd < 0)
         return 0;
-    if (fscanf(stream, "%lu", &pages) != 1)
-        pages = 0;
-    fclose(stream);
-    return (uint64_t)pages * (uint64_t)sysconf(_SC_PAGESIZE);
+    (void)platform_read(fd, text, sizeof text - 1);
+    close(fd);
+    return strtoull(text, NULL, 10) * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
 bool child_settle(int fd, int at)
@@ -95,8 +93,7 @@ bool child_settle(int fd, int at)
     return placed;
 }
 
-static void confine(const struct child *child, const struct child_limits *limits,
-                    uint64_t already_bytes, pid_t parent)
+static void confine(const struct child *child, const struct child_limits *limits, pid_t parent)
 {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     close(child->read_fd);
@@ -105,7 +102,7 @@ static void confine(const struct child *child, const struct child_limits *limits
     /* A limit that holds even while the parent is stopped. */
     limit(RLIMIT_CPU, 1 + (uint64_t)fmin(ceil(fmax(limits->cpu_s, 0.0)), 1e6));
     if (LIMIT_ADDRESS_SPACE && limits->memory_bytes)
-        limit(RLIMIT_AS, already_bytes + limits->memory_bytes);
+        limit(RLIMIT_AS, mapped_bytes() + limits->memory_bytes);
 }
 
 /* Runs fn in the sandbox; without it where it cannot be set up and is not required. */
@@ -199,12 +196,11 @@ static bool start(struct child *child, const struct child_limits *limits, child_
 {
     if (!open_channels(child, limits))
         return false;
-    uint64_t already_bytes = mapped_bytes();
     pid_t parent = getpid();
     sigset_t before;
     child->pid = child_fork(&before);
     if (child->pid == 0) {
-        confine(child, limits, already_bytes, parent);
+        confine(child, limits, parent);
         pthread_sigmask(SIG_SETMASK, &before, NULL);
         _exit(run_inside(limits, fn, user));
     }

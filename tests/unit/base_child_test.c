@@ -31,9 +31,10 @@ static const struct child_limits ordinary = {
 static double now_ms, step_ms;       /* the clock, which each reading advances by a step */
 static double used_ms, used_step_ms; /* likewise the child's processor time */
 static uint32_t reading_count, cancel_at;
-static bool child_stops;        /* the child stops itself until the third reading */
-static pid_t child;             /* the child started last */
-static volatile bool cancelled; /* set at reading `cancel_at` */
+static bool child_stops;         /* the child stops itself until the third reading */
+static pid_t child;              /* the child started last */
+static volatile bool cancelled;  /* set at reading `cancel_at` */
+static size_t mapped_late_bytes; /* what is mapped just before a fork, as by another thread */
 static atomic_bool forks_are_held, child_is_wanted, forked_while_held;
 
 static void set_clock(double step)
@@ -65,7 +66,10 @@ WRAPPED(pid_t, fork, void)
     if (atomic_load(&forks_are_held))
         atomic_store(&forked_while_held, true);
     atomic_store(&child_is_wanted, true);
+    void *late = mmap(NULL, mapped_late_bytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     pid_t pid = __real_fork();
+    if (pid > 0 && late != MAP_FAILED)
+        munmap(late, mapped_late_bytes);
     child = pid > 0 ? pid : child;
     return pid;
 }
@@ -329,6 +333,10 @@ TEST(memory_is_limited)
     size_t bytes = 128u << 20;
     assert_int_equal(child_run(&ordinary, allocate, &bytes, &reply), CHILD_DONE);
     child_reply_free(&reply);
+    mapped_late_bytes = 512u << 20; /* not the child's own memory */
+    assert_int_equal(child_run(&ordinary, allocate, &bytes, &reply), CHILD_DONE);
+    child_reply_free(&reply);
+    mapped_late_bytes = 0;
 #ifndef HAS_ASAN
     bytes = 512u << 20;
     assert_int_equal(child_run(&ordinary, allocate, &bytes, &reply), CHILD_MEMORY);
