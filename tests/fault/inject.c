@@ -90,6 +90,21 @@ static int add_range(struct dl_phdr_info *info, size_t bytes, void *user)
     return 0;
 }
 
+/* A lock of its own for the blocks that the program holds, so that they may be noted in malloc. It
+   is held at each fork: a child has no thread that would give it back. */
+static atomic_flag blocks_lock = ATOMIC_FLAG_INIT;
+
+static void lock_blocks(void)
+{
+    while (atomic_flag_test_and_set(&blocks_lock))
+        ;
+}
+
+static void unlock_blocks(void)
+{
+    atomic_flag_clear(&blocks_lock);
+}
+
 /* A child of the program gives shared memory up before it works: faults go on in a copy, of which
    the sweep sees no more than what the program makes of them. */
 static void keep_copy(void)
@@ -109,6 +124,7 @@ __attribute__((constructor)) static void begin(void)
     if (memory == MAP_FAILED)
         abort();
     shared = memory;
+    pthread_atfork(lock_blocks, unlock_blocks, unlock_blocks);
     pthread_atfork(NULL, NULL, keep_copy);
     program = getpid();
     atomic_store(&now_ns, start_ns);
@@ -212,23 +228,21 @@ int timer_settime(timer_t timer, int flags, const struct itimerspec *value,
 static int64_t block_count;
 #ifndef FAULT_NO_ALLOC
 
-/* Open addressing; 0: free, 1: was taken. A lock of its own, so that it may be taken in malloc. */
+/* Open addressing; 0: free, 1: was taken. */
 static uintptr_t blocks[BLOCKS_MAX];
 static bool blocks_over;
-static atomic_flag blocks_lock = ATOMIC_FLAG_INIT;
 
 static void *note_block(void *block, uintptr_t caller)
 {
     if (!block || !is_own(caller))
         return block;
-    while (atomic_flag_test_and_set(&blocks_lock))
-        ;
+    lock_blocks();
     size_t at = ((uintptr_t)block >> 4) * 2654435761u % BLOCKS_MAX;
     while (blocks[at] > 1)
         at = (at + 1) % BLOCKS_MAX;
     blocks[at] = (uintptr_t)block;
     blocks_over = blocks_over || ++block_count > BLOCKS_MAX / 2;
-    atomic_flag_clear(&blocks_lock);
+    unlock_blocks();
     return block;
 }
 
@@ -236,8 +250,7 @@ static void forget_block(void *block)
 {
     if (!block || block_count == 0 || blocks_over)
         return;
-    while (atomic_flag_test_and_set(&blocks_lock))
-        ;
+    lock_blocks();
     size_t at = ((uintptr_t)block >> 4) * 2654435761u % BLOCKS_MAX;
     for (size_t tries = 0; blocks[at] && tries < BLOCKS_MAX; ++tries, at = (at + 1) % BLOCKS_MAX) {
         if (blocks[at] != (uintptr_t)block)
@@ -246,7 +259,7 @@ static void forget_block(void *block)
         --block_count;
         break;
     }
-    atomic_flag_clear(&blocks_lock);
+    unlock_blocks();
 }
 
 #endif
