@@ -121,6 +121,10 @@ check "begins no golden" test ! -e copy/looks.golden
 (ulimit -f 0 && exec "$WHIT" check copy/looks.whit --on reference --accept cube 2>&1) | cat >stdout
 check "the error" grep -q "copy/looks.reference.golden: cannot write: " stdout
 check "the verdict" grep -qx "1 case, 1 new" stdout
+ln -s nowhere/golden copy/looks.golden
+refuse 2 "a golden that can never be written" "copy/looks.golden: cannot write: No such file" check copy/looks.whit --accept cube
+check "nothing is drawn for it" test ! -s stdout
+rm copy/looks.golden
 "$WHIT" check copy/looks.whit --accept cube >first 2>&1 &
 expect 0 "accepted at once" check copy/looks.whit --accept balls
 wait $!

@@ -129,17 +129,19 @@ static bool check_inputs(struct cli_reader *reader, const struct check *check)
     return apart;
 }
 
-/* Refuses to change a golden that another suite beside this one has too. */
+/* Refuses to change a golden that cannot be written, or that another suite beside this one has
+   too. */
 static bool check_golden(struct cli_reader *reader, const struct check *check)
 {
-    char *other =
-        check->accept.count || check->prune ? golden_other_suite(reader->positional) : NULL;
+    if (!check->accept.count && !check->prune)
+        return true;
+    char *other = golden_other_suite(reader->positional);
     bool shared = other && file_exists(other);
     if (shared)
         cli_misuse(reader, "%s: %s has the same golden, %s: rename one of the suites",
                    reader->positional, other, check->golden_path);
     free(other);
-    return !shared;
+    return !shared && cli_check_writable(reader, check->golden_path);
 }
 
 static bool is_folder(const char *path)
