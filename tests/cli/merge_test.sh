@@ -129,6 +129,14 @@ tiles png 2 "a model" box.obj --size 40x40
 
 large 2048 32 png 32
 
+# A part may have been drawn where the scene has another name.
+mkdir elsewhere && cp "$CUBE" elsewhere/same.json
+"$WHIT" render "$CUBE" --size 64x64 -o one.png -q
+spread 4 draw_tile png 4 "$CUBE" --size 64x64
+draw_tile 3 png 4 elsewhere/same.json --size 64x64
+expect 0 "a scene by two names" merge t1.png t2.png t3.png t4.png -o merged.png
+check "the picture is that of the first part" cmp one.png merged.png
+
 # A set of parts that is not complete is refused, and nothing is written.
 rm -f merged*
 spread 4 draw_tile png 4 "$CUBE" --size 64x64

@@ -68,7 +68,6 @@ static whit_result check_same(const struct merge_part *a, const struct merge_par
     } keys[] = {{"Software", "versions of whit"},
                 {"whit:scene_hash", "scenes"},
                 {"whit:options", "settings"},
-                {"whit:command", "commands"},
                 {WHIT_SHADER_KEY, "functions"}};
     const struct part_place *x = &a->place, *y = &b->place;
     const char *what = NULL;
