@@ -83,12 +83,18 @@ static bool read_count(const struct setting *setting, const char *text, uint32_t
     return true;
 }
 
+double setting_number(const char *text, char **end)
+{
+    double value = strtod(text, end);
+    if (*end != text && **end == '/' && isdigit((unsigned char)(*end)[1]))
+        value /= strtod(*end + 1, end);
+    return value;
+}
+
 static bool read_number(const struct setting *setting, const char *text, double *out, char *why)
 {
     char *end;
-    double value = strtod(text, &end);
-    if (end != text && *end == '/' && isdigit((unsigned char)end[1]))
-        value /= strtod(end + 1, &end);
+    double value = setting_number(text, &end);
     if (end == text || *end || !(value >= setting->min && value <= setting->max))
         return setting_refuse(why, " `%s`: a number from %g to %g is needed", text, setting->min,
                               setting->max);

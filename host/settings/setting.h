@@ -135,6 +135,9 @@ bool setting_has_argument(const struct setting *setting);
 
 /* Writes the reason by a printf format; gives false. */
 bool setting_refuse(char why[SETTING_WHY_BYTES], const char *format, ...) WHIT_PRINTF(2, 3);
+/* Reads a number or a fraction, such as 1/64; *end is the character behind it, or `text` where
+   there is none. */
+double setting_number(const char *text, char **end);
 /* The shortest decimal that reads back as `number`. */
 void setting_write_number(double number, char *text, size_t text_bytes);
 

@@ -137,7 +137,7 @@ static bool read_auto(const struct setting *row, const char *text, bool *is_auto
                       char *why)
 {
     char *end;
-    double value = strtod(text, &end);
+    double value = setting_number(text, &end);
     *is_auto = strcmp(text, "auto") == 0;
     if (*is_auto)
         return true;

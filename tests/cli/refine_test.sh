@@ -37,6 +37,8 @@ check "and the same weights" jq -es '.[0].rays.cut_by_depth.weight_of_a_pixel as
     refined.json stdout
 check "the picture's recipe has them" grep -aq -- "--aa $samples" r.exr
 check "and nothing of how they were found" sh -c '! grep -aq -- --refine r.exr'
+refined --refine 1/20
+check "a fraction is the same number ($coarse, $samples)" test "$samples" -eq "$coarse"
 refined --refine 0.02
 check "less error takes more samples ($coarse, $samples)" test "$samples" -gt "$coarse"
 same_as_samples

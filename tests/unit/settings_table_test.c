@@ -169,6 +169,8 @@ TEST(a_number_may_be_a_fraction)
     assert_true(settings.picture.bailout == 0.015625);
     for (size_t i = 0; i < sizeof none / sizeof *none; ++i)
         assert_false(settings_read(bailout, none[i], &settings, why));
+    assert_true(settings_read(settings_row("exposure"), "-1/2", &settings, why));
+    assert_true(settings.picture.exposure_ev == -0.5);
 }
 
 TEST(limits_of_adaptive_samples_are_powers_of_4)

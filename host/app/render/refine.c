@@ -21,7 +21,7 @@ bool refine_read(const struct setting *setting, const char *value, void *request
 {
     struct refine_goal *goal = &((struct render_request *)request)->refine;
     char *end;
-    double number = strtod(value, &end);
+    double number = setting_number(value, &end);
     bool is_time = end != value && strcmp(end, "ms") == 0;
     (void)setting;
     *goal = (struct refine_goal){0};
