@@ -114,6 +114,12 @@ static uint64_t inexact_hits(const struct cost_row *row)
     return sum;
 }
 
+/* The reference draws the row's picture; no option of `whit render` does. */
+static bool draws_in_double(const struct cost_row *row)
+{
+    return row->knob_index != WHIT_NONE && knob_level(&knob_table[row->knob_index]) == KNOB_DOUBLE;
+}
+
 enum cost_use cost_use_of(const struct cost_report *report, const struct cost_row *row)
 {
     const struct cost_row *usual = &report->rows[0];
@@ -129,8 +135,8 @@ enum cost_use cost_use_of(const struct cost_report *report, const struct cost_ro
     if (lacks_rays(report, row))
         return COST_USE_TRADE;
     if (row->price.verdict < 0)
-        return less_right ? COST_USE_TRADE : COST_USE_FREE;
-    return more_right ? COST_USE_TRADE : COST_USE_NONE;
+        return less_right || draws_in_double(row) ? COST_USE_TRADE : COST_USE_FREE;
+    return more_right || row->best ? COST_USE_TRADE : COST_USE_NONE;
 }
 
 /* ---- Choices ---- */

@@ -192,9 +192,9 @@ void cost_choice_apply(const struct cost_choice *choice, struct settings *settin
 /* Writes the choice as options of `whit render`. */
 void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_bytes);
 
-/* The use of a row, compared with the usual settings. NONE: neither cheaper nor more right. FREE:
-   cheaper, and at least as right (within 1 %). TRADE: cheaper but less right, or more right but not
-   cheaper. */
+/* The use of a row, compared with the usual settings. NONE: neither cheaper nor more right, by RMSE
+   or by FLIP. FREE: cheaper, and at least as right (within 1 %). TRADE: cheaper but less right, or
+   more right but not cheaper; a picture in double, which no option draws, is never more. */
 enum cost_use { COST_USE_TRADE, COST_USE_NONE, COST_USE_FREE };
 enum cost_use cost_use_of(const struct cost_report *report, const struct cost_row *row);
 

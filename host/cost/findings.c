@@ -64,6 +64,26 @@ static const struct cost_row *row_of(const struct cost_report *report, const cha
 
 /* ---- More time ---- */
 
+static bool comes_nearer(const struct cost_report *report, const struct cost_row *row)
+{
+    return is_told(row) && cost_is_judged(report, row) &&
+           row->error.flip_mean <= (1.0 - ERROR_SHARE) * report->rows[0].error.flip_mean;
+}
+
+/* Whether settings that may change the shading were measured, all can be judged, and none comes
+   nearer. */
+static bool none_comes_nearer(const struct cost_report *report)
+{
+    bool tried = false;
+    for (uint32_t i = 1; i < report->row_count; ++i) {
+        const struct cost_row *row = &report->rows[i];
+        if (is_told(row) && (!cost_is_judged(report, row) || comes_nearer(report, row)))
+            return false;
+        tried = tried || (is_told(row) && row->change == SETTING_LIGHT);
+    }
+    return tried;
+}
+
 /* The setting with the largest fall of error per doubling of the time. */
 static const struct cost_row *best_buy(const struct cost_report *report)
 {
@@ -72,8 +92,8 @@ static const struct cost_row *best_buy(const struct cost_report *report)
     for (uint32_t i = 1; i < report->row_count; ++i) {
         const struct cost_row *row = &report->rows[i];
         double ratio = ratio_of(report, row);
-        if (!is_told(row) || row->price.verdict <= 0 || ratio <= 1.0 || ratio > RATIO_MAX ||
-            !cost_is_judged(report, row) || row->error.flip_mean > (1.0 - ERROR_SHARE) * usual)
+        if (!comes_nearer(report, row) || row->price.verdict <= 0 || ratio <= 1.0 ||
+            ratio > RATIO_MAX)
             continue;
         double gain = log(usual / fmax(row->error.flip_mean, 1e-9)) / log(ratio);
         if (gain > most) {
@@ -94,7 +114,11 @@ static bool find_more_time(const struct cost_report *report, struct cost_finding
         return true;
     }
     if (!row) {
-        find(finding, "nothing that was measured comes nearer to the reference (FLIP %.4f)", usual);
+        find(finding,
+             none_comes_nearer(report)
+                 ? "nothing that was measured comes much nearer to the reference (FLIP %.4f)"
+                 : "the usual picture has a visible error of FLIP %.4f",
+             usual);
         return true;
     }
     double left = 100.0 * row->error.flip_mean / usual;
@@ -155,12 +179,12 @@ static bool find_exact(const struct cost_report *report, struct cost_finding *fi
     const struct cost_hits *aimed = &report->rows[0].hits[COST_AIMED];
     if (!exact)
         return false;
-    bool told_apart = exact->price.verdict != 0;
+    bool told_apart = exact->price.verdict > 0 && ratio_of(report, exact) > 1.0;
     double high = exact->price.ratio[report->clock].high;
     double more = 100.0 * ((told_apart ? ratio_of(report, exact) : high) - 1.0);
     add_value(finding, more);
     if (told_apart)
-        find(finding, "exact hits cost %.2g %%", more);
+        find(finding, more < 99.5 ? "exact hits cost %.2g %%" : "exact hits cost %.0f %%", more);
     else if (high > 1.0 + TIME_UNSURE)
         find(finding, "exact hits cost at most %.0f %%, as closely as could be measured", more);
     else
@@ -248,7 +272,7 @@ uint32_t cost_findings(const struct cost_report *report,
 void cost_sentence(const struct cost_report *report, char text[COST_SENTENCE_BYTES])
 {
     struct cost_finding findings[COST_FINDINGS_MAX];
-    _Static_assert(COST_SENTENCE_BYTES > SENTENCE_FINDINGS * (sizeof findings[0].text + 2) + 64,
+    _Static_assert(COST_SENTENCE_BYTES > SENTENCE_FINDINGS * (sizeof findings[0].text + 2) + 96,
                    "all of them fit");
     uint32_t count = cost_findings(report, findings);
     count = count < SENTENCE_FINDINGS ? count : SENTENCE_FINDINGS;
@@ -260,6 +284,6 @@ void cost_sentence(const struct cost_report *report, char text[COST_SENTENCE_BYT
     }
     if (report->judged_width < report->width && report->judged_width < JUDGED_WIDTH)
         end += sprintf(end, " (judged at %u x %u)", report->judged_width, report->judged_height);
-    strcpy(end, ".");
+    strcpy(end, report->complete ? "." : " (not complete: it was stopped).");
     text[0] = (char)toupper((unsigned char)text[0]);
 }

@@ -292,7 +292,55 @@ TEST(other_scenes_are_told_otherwise)
     text = sentence_of(0.02, 0.3, 1.01);
     assert_non_null(strstr(text, "leaves 30 % of the visible error"));
     assert_non_null(strstr(text, "exact hits cost nothing that can be measured"));
+    assert_non_null(strstr(sentence_of(0.02, 0.3, 2.234), "exact hits cost 123 %"));
     text = sentence_of(0.001, 0.3, 1.19);
     assert_non_null(strstr(text, "o eye tells the usual picture from the reference (FLIP 0.0010)"));
     assert_non_null(strstr(text, "exact hits cost at most 23 %, as closely as could be measured"));
+}
+
+TEST(hits_that_seem_cheaper_when_exact_cost_nothing)
+{
+    char text[COST_SENTENCE_BYTES];
+    sentence_of(0.02, 0.3, 0.9);
+    report.rows[report.row_count - 1].price.verdict = -1;
+    cost_sentence(&report, text);
+    assert_non_null(strstr(text, "exact hits cost nothing that can be measured"));
+}
+
+/* A report that was stopped, or has other knobs alone, says nothing of what was not measured. */
+TEST(what_was_not_measured_is_not_called_no_nearer)
+{
+    char text[COST_SENTENCE_BYTES];
+    const char *sampled = sentence_of(0.08, 1.0, 1.0); /* by 16 samples, which cannot be judged */
+    assert_non_null(strstr(sampled, "he usual picture has a visible error of FLIP 0.0800"));
+    report.reference_samples = 64;
+    cost_sentence(&report, text);
+    assert_non_null(strstr(text, "othing that was measured comes much nearer to the reference "
+                                 "(FLIP 0.0800)"));
+    assert_non_null(strstr(text, "(not complete: it was stopped)."));
+    report.complete = true;
+    report.rows[1].error.flip_mean = 0.04; /* for no time that can be measured */
+    report.rows[1].price.verdict = 0;
+    cost_sentence(&report, text);
+    assert_non_null(strstr(text, "he usual picture has a visible error of FLIP 0.0800"));
+    assert_null(strstr(text, "not complete"));
+    report.row_count = 1;
+    cost_sentence(&report, text);
+    assert_non_null(strstr(text, "he usual picture has a visible error of FLIP 0.0800"));
+}
+
+TEST(what_no_option_draws_is_not_free_and_what_is_best_buys_something)
+{
+    make_report();
+    add_row(knob_find("arithmetic"), 1, 0);
+    struct cost_row *row = &report.rows[report.row_count - 1];
+    row->alone.rmse = 0.0;
+    row->price.verdict = -1;
+    assert_int_equal(cost_use_of(&report, row), COST_USE_TRADE);
+    row = &report.rows[1]; /* four samples */
+    row->error.rmse = report.rows[0].error.rmse;
+    row->price.verdict = 1;
+    assert_int_equal(cost_use_of(&report, row), COST_USE_NONE);
+    row->best = true; /* by FLIP */
+    assert_int_equal(cost_use_of(&report, row), COST_USE_TRADE);
 }
