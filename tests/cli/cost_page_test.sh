@@ -18,6 +18,7 @@ check "a table of the usual settings and for each knob" test "$(count '<table>')
 check "of a knob with one setting one time and error, not from where to where" \
     grep -q '<small>x [0-9.]* in time, FLIP [0-9.]*</small>' "$OUT/dom"
 check "the sentence" grep -q '<p id="sentence">[A-Z0-9].*\.</p>' "$OUT/dom"
+check "options that no line breaks" grep -q '<span class="option">--aa [0-9]*</span>' "$OUT/dom"
 check "nothing on the console" test "$(wc -l <"$OUT/console")" -eq 0
 check "no request" test "$(wc -l <"$OUT/requests")" -eq 0
 
@@ -32,6 +33,15 @@ for wide in "table { width: 130% }" "svg text { font-size: 99px }"; do
     clipped "$OUT/wide.html"
     check "such is seen: $wide" test "$(wc -c <"$OUT/clipped")" -gt 6
 done
+
+# A crop of a picture that is one pixel wide is not as long as the page is wide for each pixel.
+sed 's|"crop":{[^}]*}|"crop":{"x":0,"y":0,"width":1,"height":40}|' "$page" >"$OUT/thin.html"
+cat >>"$OUT/thin.html" <<'END'
+<script>document.body.append(make("p", {id: "long"}, String(document.querySelector(".crop").clientHeight)));</script>
+END
+dom "$OUT/thin.html"
+long=$(sed -n 's|.*<p id="long">\([0-9]*\)</p>.*|\1|p' "$OUT/dom")
+check "a thin crop is as long as a window ($long)" test "${long:-0}" -gt 100 -a "${long:-0}" -lt 1000
 
 # The two checks can fail: a picture from elsewhere is reported as forbidden, and as a request where it is allowed.
 bad='<body><img src="http://127.0.0.1:9/x.png"/>'
