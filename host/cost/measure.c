@@ -272,7 +272,7 @@ static whit_result measure_choice(struct measure *measure, const struct cost_cho
                              .change = SETTING_LIGHT,
                              .ms = {-1.0, -1.0, -1.0}};
     snprintf(row->knob, sizeof row->knob, "chosen");
-    snprintf(row->setting, sizeof row->setting, "%s %.4g%s",
+    snprintf(row->setting, sizeof row->setting, "%s %.6g%s",
              answer->goal.kind == COST_WITHIN ? "within" : "under", answer->goal.limit,
              answer->goal.kind == COST_WITHIN ? " ms" : "");
     cost_choice_text(choice, row->option, sizeof row->option);

@@ -133,6 +133,9 @@ check "is nothing else" jq -e .complete "$OUT/stdout"
 expect 0 "one knob" cost "$GLASS" $small --reference-samples 4 --knobs fresnel --rays 0 --csv "$C"
 check "is that knob alone" test "$(grep -c '^fresnel  *schlick ' "$OUT/stdout")" -eq 1
 check "and no other" test "$(grep -c '^aa  ' "$OUT/stdout")" -eq 0
+refuse 2 "a file that cannot be written" "No space left" cost "$CUBE" $small --reference-samples 4 --knobs numerics \
+    --rays 0 --json /dev/full --html "$OUT/files/kept.html" --csv "$OUT/files/kept.csv"
+check "the others are" test -s "$OUT/files/kept.html" -a -s "$OUT/files/kept.csv"
 if part 0 2; then
     expect 1 "an error that nothing has" cost "$CUBE" $small --reference-samples 4 --knobs shadows --rays 0 \
         --under 1e-9
@@ -154,6 +157,11 @@ if part 1 2; then
     check "says what it took" grep -q "^whit: note: it took [0-9.]* of 1e+06 ms$" "$OUT/stderr"
     wrong compile expect 0 "kernels that take that time" render $enough
     check "are no part of it" test "$(grep -c "it will take" "$OUT/stderr")" -eq 0
+    for run in first second; do
+        expect 0 "a time that is a fraction, the $run run" render $tiny --budget-ms 10000000/3
+    done
+    check "the second has the choice of the first" \
+        test "$(cat "$OUT"/cache/whit/cost-* | grep -ao '"budget_ms": *3333333' | wc -l)" -eq 1
     # A choice whose tries took too long is tried again.
     wrong noisy expect 0 "a time that slow tries exceed" render $tiny --budget-ms 160
     check "says so" grep -q "it is likely to take more than 160 ms" "$OUT/stderr"

@@ -186,18 +186,24 @@ static whit_result find_out(struct cost *cost)
     return result;
 }
 
+static void keep_first(whit_result *first, whit_result result)
+{
+    *first = *first == WHIT_OK ? result : *first;
+}
+
+/* Saves each file, also where another one cannot be written: what was measured took minutes. */
 static whit_result save_all(const struct cost *cost)
 {
-    whit_result result = WHIT_OK;
+    whit_result first = WHIT_OK;
     if (cost->json)
-        result = document_save(cost_document(cost->report, cost), cost->json);
-    if (result == WHIT_OK && cost->csv)
-        result = document_save_written(cost->csv, cost_write_csv, cost);
-    if (result == WHIT_OK && cost->markdown)
-        result = document_save_written(cost->markdown, cost_write_markdown, cost);
-    if (result == WHIT_OK && cost->html)
-        result = cost_save_page(cost);
-    return result;
+        keep_first(&first, document_save(cost_document(cost->report, cost), cost->json));
+    if (cost->csv)
+        keep_first(&first, document_save_written(cost->csv, cost_write_csv, cost));
+    if (cost->markdown)
+        keep_first(&first, document_save_written(cost->markdown, cost_write_markdown, cost));
+    if (cost->html)
+        keep_first(&first, cost_save_page(cost));
+    return first;
 }
 
 /* EXIT_DIFFERS where a setting that must not change the picture changed it, or no settings were

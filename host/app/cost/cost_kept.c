@@ -1,6 +1,7 @@
 /* A record in whit's cache for --budget-ms and --max-error: the measured figures of a scene, and
    the choices made by them, so that the next run makes the same choice. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -39,11 +40,17 @@ void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report)
         strftime(kept->made, sizeof kept->made, "%Y-%m-%d %H:%M UTC", &utc);
 }
 
+/* Budgets come back from JSON with 15 digits, of which fractions have more. */
+static bool same_budget(double a, double b)
+{
+    return fabs(a - b) <= 1e-14 * a;
+}
+
 const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, double budget_ms)
 {
     for (uint32_t i = 0; i < kept->choice_count; ++i) {
         const struct cost_kept_choice *choice = &kept->choices[i];
-        if (choice->budget_ms == budget_ms && choice->tried_ms <= budget_ms)
+        if (same_budget(choice->budget_ms, budget_ms) && choice->tried_ms <= budget_ms)
             return choice;
     }
     return NULL;
@@ -52,7 +59,8 @@ const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, doub
 void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice)
 {
     uint32_t drop = 0; /* the one for the same budget, or the oldest */
-    while (drop < kept->choice_count && kept->choices[drop].budget_ms != choice->budget_ms)
+    while (drop < kept->choice_count &&
+           !same_budget(kept->choices[drop].budget_ms, choice->budget_ms))
         ++drop;
     if (drop == COST_KEPT_CHOICES)
         drop = 0;

@@ -73,6 +73,7 @@ static void fill_row(const struct cost_report *report, const struct cost_row *ro
 {
     const struct sample_median *ratio = &row->price.ratio[report->clock];
     const whit_difference *error = &row->error;
+    char low[COST_CELL], high[COST_CELL];
     memset(cells, 0, sizeof *cells);
     put(cells->text[0], "%s", row->knob);
     put(cells->text[1], "%s", row->setting);
@@ -80,7 +81,9 @@ static void fill_row(const struct cost_report *report, const struct cost_row *ro
     if (!row->measured)
         return;
     put_ms(cells->text[2], row->ms[report->clock]);
-    put(cells->text[3], "%.4g to %.4g", row->ms_low, row->ms_high);
+    put_ms(low, row->ms_low);
+    put_ms(high, row->ms_high);
+    put(cells->text[3], "%.28s to %.28s", low, high);
     put(cells->text[4], "x %.3f", row == &report->rows[0] ? 1.0 : ratio->median);
     put(cells->text[5], "%.3g", error->rmse);
     put(cells->text[6], "%.4f", error->flip_mean);
