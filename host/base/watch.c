@@ -7,6 +7,7 @@
 #include <sys/eventfd.h>
 #include <sys/inotify.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/array.h"
@@ -26,6 +27,7 @@ struct watch {
     void (*wake)(void *user);
     struct watched *files;
     uint32_t count, capacity;
+    bool missed; /* a file had changed before it was watched */
 };
 
 /* inotify merges an event with an equal one that is still unread, and then wakes nobody, as the
@@ -98,10 +100,33 @@ void watch_clear(struct watch *watch)
         free(watch->files[i].name);
     }
     watch->count = 0;
+    watch->missed = false;
     (void)watch_changed(watch); /* discards earlier events */
 }
 
-static void add_one(struct watch *watch, const char *path)
+static int64_t to_ns(struct timespec time)
+{
+    return (int64_t)time.tv_sec * 1000000000 + time.tv_nsec;
+}
+
+int64_t watch_now_ns(void)
+{
+    struct timespec now;
+    return clock_gettime(CLOCK_REALTIME, &now) == 0 ? to_ns(now) : 0;
+}
+
+/* st_ctim is also the time of a rename. A time in the future, by another machine's clock, tells
+   nothing, and would be found at each call. */
+static bool has_changed(const char *path, int64_t since_ns)
+{
+    struct stat info;
+    if (lstat(path, &info) != 0 || !(S_ISREG(info.st_mode) || S_ISLNK(info.st_mode)))
+        return false;
+    int64_t changed_ns = to_ns(info.st_ctim);
+    return changed_ns > since_ns && changed_ns <= watch_now_ns();
+}
+
+static void add_one(struct watch *watch, const char *path, int64_t since_ns)
 {
     char *folder = path_folder(path);
     if (!folder)
@@ -115,18 +140,22 @@ static void add_one(struct watch *watch, const char *path)
     if (file.folder < 0 || !file.name ||
         !ARRAY_PUSH(watch->files, watch->count, watch->capacity, file))
         free(file.name);
+    else if (has_changed(path, since_ns)) {
+        watch->missed = true;
+        watch->wake(NULL);
+    }
 }
 
-void watch_add(struct watch *watch, const char *path)
+void watch_add(struct watch *watch, const char *path, int64_t since_ns)
 {
     struct stat info;
     if (!watch || is_input(path))
         return;
-    add_one(watch, path);
+    add_one(watch, path, since_ns);
     bool is_link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
     char *target = is_link ? realpath(path, NULL) : NULL;
     if (target)
-        add_one(watch, target);
+        add_one(watch, target, since_ns);
     free(target);
 }
 
@@ -143,7 +172,7 @@ static bool is_watched(const struct watch *watch, const struct inotify_event *ev
 bool watch_changed(struct watch *watch)
 {
     _Alignas(struct inotify_event) char buffer[4096];
-    bool changed = false;
+    bool changed = watch && watch->missed;
     ssize_t bytes;
     while (watch && (bytes = read(watch->fd, buffer, sizeof buffer)) > 0) {
         for (ssize_t at = 0; at < bytes;) {
@@ -153,5 +182,7 @@ bool watch_changed(struct watch *watch)
             at += (ssize_t)(sizeof *event + event->len);
         }
     }
+    if (watch)
+        watch->missed = false;
     return changed;
 }

@@ -4,6 +4,7 @@
 #define BASE_WATCH_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 struct watch;
 
@@ -12,8 +13,10 @@ struct watch;
 struct watch *watch_create(void (*wake)(void *user));
 void watch_destroy(struct watch *watch); /* NULL is fine */
 /* Adds a file. Since editors replace files, its folder is watched for its name. Standard input,
-   which never changes, is not watched. */
-void watch_add(struct watch *watch, const char *path);
+   which never changes, is not watched. A change between `since_ns` and this call counts, too. */
+void watch_add(struct watch *watch, const char *path, int64_t since_ns);
+/* The clock by which the system notes when files change; take it before a file is read. */
+int64_t watch_now_ns(void);
 void watch_clear(struct watch *watch); /* stops watching all files */
 /* Whether a watched file was written and closed, or replaced by another file, since the last call.
    Does not wait. */

@@ -113,7 +113,7 @@ void engine_watch_unread(struct engine *engine, struct watch *watch)
 {
     pthread_mutex_lock(&engine->lock);
     for (uint32_t i = 0; i < engine->unread.count; ++i)
-        watch_add(watch, engine->unread.paths[i]);
+        watch_add(watch, engine->unread.paths[i], engine->unread.since_ns);
     pthread_mutex_unlock(&engine->lock);
 }
 

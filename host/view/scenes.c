@@ -100,7 +100,7 @@ static void set_asked(struct view *view, const char *path)
     snprintf(view->asked, sizeof view->asked, "%s", path);
     watch_clear(view->watch_asked);
     if (strcmp(path, view->fallback.scene) != 0)
-        watch_add(view->watch_asked, path);
+        watch_add(view->watch_asked, path, watch_now_ns());
 }
 
 static void open_scene(struct view *view, const char *path)
@@ -289,7 +289,7 @@ static void watch_scene(struct view *view)
     const struct file_list *files = &view->scene->files;
     watch_clear(view->watch);
     for (uint32_t i = 0; i < files->count; ++i)
-        watch_add(view->watch, files->paths[i]);
+        watch_add(view->watch, files->paths[i], files->since_ns);
 }
 
 void scenes_watch(struct view *view)

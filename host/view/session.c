@@ -2,6 +2,7 @@
 #include "base/array.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "base/watch.h"
 #include "whit/whit_program.h"
 
 #include <stdarg.h>
@@ -126,6 +127,7 @@ static whit_result load_shader(struct session *session, whit_shader_compiler *co
         return WHIT_ERROR_MEMORY;
     atomic_init(&ref->refs, 1);
     ref->settings = *settings;
+    ref->since_ns = watch_now_ns();
     whit_result result = whit_shader_load_stages(
         compiler, settings->shader[0] ? settings->shader : NULL,
         settings->stages[0] ? settings->stages : NULL, settings->trust, &ref->shader);
@@ -153,6 +155,7 @@ static whit_result load(struct session *session, const whit_log *log)
         return WHIT_ERROR_MEMORY;
     atomic_init(&ref->refs, 1);
     ref->settings = *settings;
+    ref->files.since_ns = watch_now_ns();
     params.found_user = &ref->files;
     session->scene = ref;
     whit_result result = whit_scene_load(settings->scene, &params, log, &ref->scene);

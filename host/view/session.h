@@ -9,6 +9,7 @@
 
 /* Paths of files, each once, malloc'ed. */
 struct file_list {
+    int64_t since_ns; /* before the first was read, by watch_now_ns */
     char **paths;
     uint32_t count, capacity;
 };
@@ -31,6 +32,7 @@ struct shader_ref {
     whit_shader *shader;
     whit_shader_info info;
     struct settings settings; /* settings that it was compiled for */
+    int64_t since_ns;         /* before its first file was read, by watch_now_ns */
 };
 struct shader_ref *shader_ref_take(struct shader_ref *ref); /* NULL is fine */
 void shader_ref_drop(struct shader_ref *ref);               /* NULL is fine */

@@ -24,13 +24,14 @@ static const double SEEN_MS = 250.0;
 static void watch_files(struct view *view)
 {
     const struct shader_ref *shown = view->shaders.shown;
+    int64_t since_ns = shown ? shown->since_ns : watch_now_ns();
     watch_clear(view->shaders.watch);
     if (whit_image_format_known(view->settings.shader, false))
         return;
     if (view->settings.shader[0])
-        watch_add(view->shaders.watch, view->settings.shader);
+        watch_add(view->shaders.watch, view->settings.shader, since_ns);
     for (uint32_t i = 0; shown && i < shown->info.file_count; ++i)
-        watch_add(view->shaders.watch, shown->info.files[i]);
+        watch_add(view->shaders.watch, shown->info.files[i], since_ns);
 }
 
 /* Also watches the files that errors name, one error a line: "FILE:LINE: ...", and included files
@@ -44,14 +45,14 @@ static void watch_broken(struct view *view)
         size_t length = strcspn(line, ":");
         char *name = line[length] ? strstr(line + length + 1, include) : NULL;
         line[length] = '\0';
-        watch_add(view->shaders.watch, line);
+        watch_add(view->shaders.watch, line, watch_now_ns());
         if (!name)
             continue;
         name += strlen(include);
         name[strcspn(name, "\"")] = '\0';
         char *path = path_beside(line, name);
         if (path)
-            watch_add(view->shaders.watch, path);
+            watch_add(view->shaders.watch, path, watch_now_ns());
         free(path);
     }
 }

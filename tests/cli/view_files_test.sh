@@ -156,6 +156,17 @@ END
     check "each error once on standard error" test "$(cut -d : -f 3,4 "$OUT/stderr" | tr '\n' ' ')" = \
         " own.json:$line  own.json:$line  late.json: there is no such file "
     EXPECTED=
+    # So it is if it was written while another scene was shown.
+    cp "$CUBE" own.json
+    sed 's/#d98a3d/#0000ff/' "$CUBE" >blue.json
+    play "written unseen" own.json --size 96x64 <<END
+start:
+other: drop $SCENES/8k.json
+do mv blue.json own.json && touch written
+back: await written, drop own.json, until toast = own.json was written: reading it again | frame.ids as start
+    | frame.pixels not as start
+same: drop $SCENES/8k.json, wait 9000, still, drop own.json | frame.made is frame.made of back | toast =
+END
 fi
 
 if part 1 2; then

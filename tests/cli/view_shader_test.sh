@@ -325,6 +325,16 @@ until shader.changed
 second: | shader.whole = 2
 END
     check "a line for each" test "$(grep -c 'note: h.glsl: ' "$OUT/stderr")" -eq 2
+    # A file that was saved while another was used is read again.
+    cp grb.new live/i.glsl
+    for name in h i; do echo "--shader live/$name.glsl" >$name.view; done
+    versions live/h.glsl good gbr
+    play "saved unseen" cube.json --size 96x64 --shader live/h.glsl <<END
+start:
+other: drop i.view | frame.pixels not as start
+do cp gbr.new live/h.glsl && touch saved
+back: await saved, drop h.view, until shader.hash = $gbr | frame.pixels not as start | frame.pixels not as other
+END
 fi
 
 # ---- If the compiler's process ends while it compiles, that is an error like others, and the next save works ----

@@ -19,7 +19,7 @@ TEST_IN(changes_are_told_once, folder_begin, folder_end)
     struct watch *watch = watch_create(wake);
     assert_non_null(watch);
     put_text("a.json", "1");
-    watch_add(watch, in_folder("a.json"));
+    watch_add(watch, in_folder("a.json"), watch_now_ns());
     assert_false(watch_changed(watch));
     put_text("a.json", "2");
     assert_true(watch_changed(watch));
@@ -31,12 +31,47 @@ TEST_IN(changes_are_told_once, folder_begin, folder_end)
     watch_destroy(watch);
 }
 
+/* A pause lets the system's coarse clock of files go on. */
+static int64_t moment(void)
+{
+    const struct timespec pause = {.tv_nsec = 50000000};
+    nanosleep(&pause, NULL);
+    return watch_now_ns();
+}
+
+TEST_IN(changes_before_it_was_watched_are_told, folder_begin, folder_end)
+{
+    struct watch *watch = watch_create(wake);
+    put_text("a.json", "1");
+    put_text("new", "2");
+    int64_t since_ns = moment();
+    watch_add(watch, in_folder("a.json"), since_ns);
+    watch_add(watch, in_folder("late.json"), since_ns);
+    assert_false(watch_changed(watch));
+    moment();
+    put_text("late.json", "1");
+    watch_clear(watch); /* loses the event */
+    while (sem_trywait(&woken) == 0)
+        continue;
+    watch_add(watch, in_folder("late.json"), since_ns);
+    assert_int_equal(sem_trywait(&woken), 0);
+    assert_true(watch_changed(watch));
+    assert_false(watch_changed(watch));
+    assert_int_equal(rename(in_folder("new"), in_folder("a.json")), 0);
+    watch_clear(watch);
+    watch_add(watch, in_folder("a.json"), since_ns);
+    assert_true(watch_changed(watch));
+    watch_add(watch, in_folder("a.json"), moment());
+    assert_false(watch_changed(watch));
+    watch_destroy(watch);
+}
+
 TEST_IN(who_waits_is_woken, folder_begin, folder_end)
 {
     struct timespec until;
     struct watch *watch = watch_create(wake);
     assert_non_null(watch);
-    watch_add(watch, in_folder("a.json"));
+    watch_add(watch, in_folder("a.json"), watch_now_ns());
     while (sem_trywait(&woken) == 0)
         continue;
     assert_int_equal(clock_gettime(CLOCK_REALTIME, &until), 0);
@@ -52,16 +87,16 @@ TEST_IN(who_waits_is_woken, folder_begin, folder_end)
 TEST_IN(others_are_nobodys_business, folder_begin, folder_end)
 {
     struct watch *watch = watch_create(wake);
-    watch_add(watch, in_folder("a.json"));
+    watch_add(watch, in_folder("a.json"), watch_now_ns());
     put_text("b.json", "1");
     assert_false(watch_changed(watch));
-    watch_add(watch, in_folder("b.json"));
+    watch_add(watch, in_folder("b.json"), watch_now_ns());
     put_text("b.json", "2");
     assert_true(watch_changed(watch));
     watch_clear(watch);
     put_text("a.json", "3");
     assert_false(watch_changed(watch));
-    watch_add(watch, in_folder("a.json")); /* again, after the folder was let go */
+    watch_add(watch, in_folder("a.json"), watch_now_ns()); /* again, after the folder was let go */
     put_text("a.json", "4");
     assert_true(watch_changed(watch));
     watch_destroy(watch);
@@ -76,7 +111,7 @@ TEST_IN(more_events_than_there_is_room_for_are_a_change, folder_begin, folder_en
         skip();
     fclose(limit);
     struct watch *watch = watch_create(wake);
-    watch_add(watch, in_folder("a.json"));
+    watch_add(watch, in_folder("a.json"), watch_now_ns());
     for (unsigned i = 0; i < room; ++i)
         assert_int_equal(close(open(in_folder(i % 2 ? "b" : "c"), O_WRONLY | O_CREAT, 0600)), 0);
     put_text("a.json", "1"); /* which gets lost */
@@ -87,12 +122,12 @@ TEST_IN(more_events_than_there_is_room_for_are_a_change, folder_begin, folder_en
 
 TEST(nothing_is_fine)
 {
-    watch_add(NULL, "a");
+    watch_add(NULL, "a", watch_now_ns());
     watch_clear(NULL);
     assert_false(watch_changed(NULL));
     watch_destroy(NULL);
     struct watch *watch = watch_create(wake);
-    watch_add(watch, in_folder("no/such/folder/a.json"));
+    watch_add(watch, in_folder("no/such/folder/a.json"), watch_now_ns());
     assert_false(watch_changed(watch));
     watch_destroy(watch);
 }
