@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/platform.h"
+#include "base/text.h"
 
 enum { LARGE_BYTES = 4 << 20 };
 
@@ -83,7 +84,7 @@ char *string_format(const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    int length = vsnprintf(NULL, 0, format, args);
+    int length = text_print(NULL, 0, format, args);
     va_end(args);
     if (length < 0)
         return NULL;
@@ -91,7 +92,7 @@ char *string_format(const char *format, ...)
     if (!text)
         return NULL;
     va_start(args, format);
-    vsnprintf(text, (size_t)length + 1, format, args);
+    text_print(text, (size_t)length + 1, format, args);
     va_end(args);
     return text;
 }

@@ -1,4 +1,5 @@
 #include "base/log.h"
+#include "base/text.h"
 
 #include <pthread.h>
 #include <stdarg.h>
@@ -16,7 +17,7 @@ static void show(const whit_log *log, whit_log_level level, const char *format, 
     if (!log || !log->fn || level > log->level)
         return;
     char text[2048], shown[4 * sizeof text];
-    vsnprintf(text, sizeof text, format, args);
+    text_print(text, sizeof text, format, args);
     whit_text_show(text, shown, sizeof shown);
     pthread_mutex_lock(&log_mutex);
     log->fn(log->user, level, shown);

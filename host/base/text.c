@@ -1,10 +1,12 @@
 #include "base/text.h"
 
 #include <ctype.h>
+#include <locale.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Number of bytes of the character that `text` starts with; 0: it is no UTF-8, or an overlong
@@ -131,12 +133,34 @@ const char *text_number(const char *text, uint32_t max, uint32_t *out)
     return at > text && value <= max ? at : NULL;
 }
 
+/* The C library has this locale ready: nothing is allocated, and nothing is to be freed. */
+static locale_t locale_of_files(void)
+{
+    return newlocale(LC_ALL_MASK, "C", (locale_t)0);
+}
+
+int text_print(char *text, size_t bytes, const char *format, va_list args)
+{
+    locale_t before = uselocale(locale_of_files());
+    int length = vsnprintf(text, bytes, format, args);
+    uselocale(before);
+    return length;
+}
+
+double text_real(const char *text, char **end)
+{
+    locale_t before = uselocale(locale_of_files());
+    double number = strtod(text, end);
+    uselocale(before);
+    return number;
+}
+
 void text_add(char *text, size_t bytes, const char *format, ...)
 {
     size_t used = strlen(text);
     va_list args;
     va_start(args, format);
-    vsnprintf(text + used, bytes - used, format, args);
+    text_print(text + used, bytes - used, format, args);
     va_end(args);
 }
 

@@ -2,6 +2,8 @@
 #ifndef BASE_TEXT_H
 #define BASE_TEXT_H
 
+#include <stdarg.h>
+
 #include "whit/whit_base.h"
 
 /* The most characters of a file that a message quotes: enough to find the place, too few to read
@@ -26,6 +28,11 @@ bool text_end_line(char *line);
 /* Reads the digits that `text` begins with; gives the text behind them. NULL: there are none, or
    the number is above `max`. */
 const char *text_number(const char *text, uint32_t max, uint32_t *out);
+
+/* As vsnprintf and strtod, but numbers have a point whatever the locale of the program that uses
+   the library: texts that whit writes, and files, are the same in all of them. */
+int text_print(char *text, size_t bytes, const char *format, va_list args) WHIT_PRINTF(3, 0);
+double text_real(const char *text, char **end);
 
 /* Appends to `text`, which lies in a buffer of `bytes`. What does not fit is cut. */
 void text_add(char *text, size_t bytes, const char *format, ...) WHIT_PRINTF(3, 4);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "image/heat.h"
 
 /* Never popped: unused functions are reported at the end of the file. */
@@ -148,11 +149,24 @@ static void draw_bar(const struct legend *legend, const struct canvas *canvas,
     }
 }
 
+struct number {
+    char text[32];
+};
+
+static struct number number_of(double value)
+{
+    struct number number = {""};
+    text_add(number.text, sizeof number.text, "%g", value);
+    return number;
+}
+
 /* Draws a number centred under its tick, but within the bar. */
 static void draw_number(const struct legend *legend, const struct canvas *canvas,
-                        const struct bar *bar, double value, const char *text)
+                        const struct bar *bar, double value)
 {
     static const uint8_t ink[3] = {INK, INK, INK};
+    const struct number number = number_of(value);
+    const char *text = number.text;
     uint32_t width = text_width(text) * canvas->zoom, last = bar->width - canvas->zoom;
     double share = fmin(value / legend->scale, 1.0);
     if (legend->is_signed)
@@ -178,21 +192,16 @@ static double tick_step(double min)
 static void draw_ticks(const struct legend *legend, const struct canvas *canvas,
                        const struct bar *bar)
 {
-    char last[32], text[32];
-    snprintf(last, sizeof last, "%g", legend->scale);
-    uint32_t number_width = (text_width(last) + 14) * canvas->zoom;
+    uint32_t number_width = (text_width(number_of(legend->scale).text) + 14) * canvas->zoom;
     uint32_t room = legend->is_signed ? bar->width / 2 : bar->width;
     uint32_t max = room / number_width < 10 ? room / number_width : 10;
     double step = tick_step(legend->scale / (max ? max : 1) * (1.0 - 1e-9));
     double end = legend->scale * (1.0 - 1.5 * number_width / (double)room);
-    draw_number(legend, canvas, bar, 0.0, "0");
+    draw_number(legend, canvas, bar, 0.0);
     for (int side = legend->is_signed ? -1 : 1; side <= 1; side += 2) {
-        for (uint32_t i = 1; i < 16 && i * step < end; ++i) {
-            snprintf(text, sizeof text, "%g", side * (i * step));
-            draw_number(legend, canvas, bar, side * (i * step), text);
-        }
-        snprintf(text, sizeof text, "%g", side * legend->scale);
-        draw_number(legend, canvas, bar, side * legend->scale, text);
+        for (uint32_t i = 1; i < 16 && i * step < end; ++i)
+            draw_number(legend, canvas, bar, side * (i * step));
+        draw_number(legend, canvas, bar, side * legend->scale);
     }
 }
 

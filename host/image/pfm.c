@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/text.h"
 #include "image/formats.h"
 
 static void put_float(uint8_t *to, float value)
@@ -98,7 +99,7 @@ static bool parse_header(const struct image_source *source, size_t *at, uint64_t
     }
     if (!next_word(source, at, word, sizeof word))
         return false;
-    *scale = strtod(word, &end);
+    *scale = text_real(word, &end);
     return *end == 0 && isfinite(*scale) && *scale != 0.0;
 }
 

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "load/gltf_json.h"
 
 struct gltf_place gltf_place(const char *format, ...)
@@ -10,7 +11,7 @@ struct gltf_place gltf_place(const char *format, ...)
     struct gltf_place place;
     va_list args;
     va_start(args, format);
-    vsnprintf(place.text, sizeof place.text, format, args);
+    text_print(place.text, sizeof place.text, format, args);
     va_end(args);
     return place;
 }
@@ -20,7 +21,7 @@ bool gltf_fail(const struct gltf *gltf, const struct gltf_place *at, const char 
     char text[256];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    text_print(text, sizeof text, format, args);
     va_end(args);
     log_error(&gltf->scene->log, "%s: %s: %s", gltf->request->path, at->text, text);
     return false;

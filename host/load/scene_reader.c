@@ -175,7 +175,7 @@ bool reader_fail(struct reader *reader, const struct place *place, const char *f
     uint32_t line, column;
     va_list args;
     va_start(args, format);
-    vsnprintf(message, sizeof message, format, args);
+    text_print(message, sizeof message, format, args);
     va_end(args);
     (void)place_text(place, where, sizeof where);
     (void)locate(reader, place, &marked);
@@ -192,7 +192,7 @@ bool reader_afford(struct reader *reader, const struct place *place, uint64_t by
     char what[100], where[200] = "";
     va_list args;
     va_start(args, format);
-    vsnprintf(what, sizeof what, format, args);
+    text_print(what, sizeof what, format, args);
     va_end(args);
     place_text(place, where, sizeof where);
     if (scene_afford(reader->scene, bytes, "%.150s: %s", where, what))

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* memmem */
 #include "load/unread.h"
 
+#include "base/text.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -94,7 +95,7 @@ static bool is_one(struct span in)
             in.at++;
         for (size_t k = 0; in.at<in.end && * in.at> ' ' && *in.at != '<' && k < sizeof text - 1;)
             text[k++] = *in.at++;
-        one &= strtod(text, NULL) == (i % 5 == 0);
+        one &= text_real(text, NULL) == (i % 5 == 0);
     }
     return one;
 }

@@ -1,5 +1,6 @@
 #include "scene/afford.h"
 
+#include "base/text.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -67,7 +68,7 @@ bool scene_afford(struct scene *scene, uint64_t bytes, const char *what, ...)
     char text[256];
     va_list args;
     va_start(args, what);
-    vsnprintf(text, sizeof text, what, args);
+    text_print(text, sizeof text, what, args);
     va_end(args);
     bool good = scene_could_afford(scene, &scene->log, bytes, text);
     scene->memory_taken += good ? bytes : 0;

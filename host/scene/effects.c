@@ -54,7 +54,7 @@ static void call(struct scene_effects *out, enum scene_effect effect, const char
     out->called[effect] = true;
     va_list args;
     va_start(args, format);
-    vsnprintf(out->reasons[effect], sizeof out->reasons[effect], format, args);
+    text_print(out->reasons[effect], sizeof out->reasons[effect], format, args);
     va_end(args);
 }
 

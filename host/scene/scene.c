@@ -9,6 +9,7 @@
 #include "base/array.h"
 #include "base/child.h"
 #include "base/same.h"
+#include "base/text.h"
 #include "base/vec.h"
 
 struct scene *scene_create(const whit_log *log, const char *name)
@@ -361,7 +362,7 @@ void scene_note(struct scene *scene, enum scene_note_level level, const char *fo
     char text[512];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    text_print(text, sizeof text, format, args);
     va_end(args);
     if (level == SCENE_NOTE_WARNING)
         log_warning(&scene->log, "%s", text);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "shader/annotations.h"
 #include "shader/scan.h"
 #include "sources.h"
@@ -26,7 +27,7 @@ static bool complain(const struct line *line, const char *format, ...)
     char text[SHADER_REASON_BYTES];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    text_print(text, sizeof text, format, arguments);
     va_end(arguments);
     shader_error_add(line->log, line->errors, line->shader->text.files[line->file].name,
                      line->number, 0, "%s", text);
@@ -82,7 +83,7 @@ static bool read_number(struct line *line, const char *what, double min, double 
 {
     char word[SHADER_NAME_BYTES], *end;
     bool fits = next_word(line, word, sizeof word);
-    *number = strtod(word, &end);
+    *number = text_real(word, &end);
     if (fits && end != word && !*end && *number >= min && *number <= max)
         return true;
     return complain(line, "%s is a number from %g to %g, not `%.60s`", what, min, max, word);

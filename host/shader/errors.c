@@ -1,5 +1,6 @@
 #include "shader/errors.h"
 
+#include "base/text.h"
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -10,7 +11,7 @@ void shader_error_add(const whit_log *log, struct shader_errors *errors, const c
     snprintf(error.file, sizeof error.file, "%s", file);
     va_list args;
     va_start(args, format);
-    vsnprintf(error.reason, sizeof error.reason, format, args);
+    text_print(error.reason, sizeof error.reason, format, args);
     va_end(args);
     if (errors && errors->count == SHADER_ERROR_MAX) {
         if (!errors->more++)

@@ -76,7 +76,7 @@ static bool read_value(const whit_slider *slider, const char *value, float out[3
     char *end;
     switch (slider->kind) {
     case WHIT_SLIDER_NUMBER:
-        out[0] = strtof(value, &end);
+        out[0] = (float)text_real(value, &end);
         return end != value && !*end && out[0] >= slider->min && out[0] <= slider->max;
     case WHIT_SLIDER_COLOR:
         return shader_color_read(value, out);

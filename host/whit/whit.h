@@ -25,6 +25,9 @@
    that of messages among them, and the next call may wait forever. One for messages calls nothing
    that logs, as it would wait for itself.
 
+   The program may have set any locale: numbers in files, and in texts of the library, have a point.
+   Threads that call the library round to nearest (fenv.h), as programs begin.
+
    fork(): in the child, the parent's devices and what was made from them can be neither used nor
    destroyed, since threads of their drivers are missing there. It creates its own, and ends by
    _exit(): handlers that drivers have set for exit() may wait for those threads. */

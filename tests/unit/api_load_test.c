@@ -2,7 +2,9 @@
    unchanged, and all values of enumerations have words. */
 #include <dirent.h>
 #include <errno.h>
+#include <locale.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include "../wrapped.h"
@@ -66,6 +68,81 @@ TEST_IN(the_host_is_left_as_it_was, folder_begin, folder_end)
     whit_scene_destroy(scene);
     assert_true(remove("a.obj") == 0 && remove("a.hdr") == 0 && remove("a.json") == 0);
     assert_int_equal(rmdir(folder), 0);
+}
+
+/* Sets a locale whose numbers have a comma, by a file as glibc reads it. */
+static void expect_commas(void)
+{
+    static const unsigned char
+        numeric[] = {0x14, 0x11, 0x03, 0x20, 6,  0, 0, 0,   32, 0, 0, 0, 34, 0, 0, 0, /* where the
+                                                                                         six are: */
+                     36,   0,    0,    0,    40, 0, 0, 0,   44, 0, 0, 0, 48, 0, 0, 0,   ',',
+                     0,    0,    0,    0xff, 0,  0, 0, ',', 0,  0, 0, 0, 0,  0, 0, 'A', 'S',
+                     'C',  'I',  'I',  0}; /* as numbers of 32 bits: the point, the separator */
+    char text[8];
+    assert_int_equal(mkdir(in_folder("comma"), 0700), 0);
+    put_data("comma/LC_NUMERIC", numeric, sizeof numeric);
+    setenv("LOCPATH", folder, 1);
+    if (!setlocale(LC_NUMERIC, "comma"))
+        skip();
+    snprintf(text, sizeof text, "%g", 0.5);
+    assert_string_equal(text, "0,5");
+}
+
+static whit_image *ramp_with_legend(void)
+{
+    const float ramp[2] = {0.0f, 0.5f};
+    whit_image *values = NULL, *heat = NULL;
+    assert_int_equal(whit_image_create(2, 1, 1, ramp, &values), WHIT_OK);
+    assert_int_equal(whit_image_heat(values, NULL, &heat), WHIT_OK);
+    whit_image_destroy(values);
+    return heat;
+}
+
+static uint64_t hash_of(const char *path)
+{
+    whit_scene *scene = NULL;
+    whit_scene_info info;
+    assert_int_equal(whit_scene_load(path, NULL, NULL, &scene), WHIT_OK);
+    whit_scene_get_info(scene, &info);
+    whit_scene_destroy(scene);
+    return info.hash;
+}
+
+/* A host program may have set any locale. */
+TEST_IN(numbers_have_a_point_in_any_locale, folder_begin, folder_end)
+{
+    const char *obj =
+        put_text("a.obj", "mtllib a.mtl\nv 0.5 0 0\nv 1.5 0 0\nv 0 1.25 0\nvt 0.5 0.5\n"
+                          "usemtl a\nf 1/1 2/1 3/1\n");
+    const char *pfm = put_data("a.pfm", "Pf\n1 1\n-1.0\n\0\0\0\x3f", 17);
+    put_text("a.mtl", "newmtl a\nKd 0.25 0.5 0.75\nmap_Kd -mm 0.25 0.5 a.pfm\n");
+    const whit_probe_value vector = {.size = 2, .v = {0.5, 1.5}};
+    whit_shader_compiler *compiler = NULL;
+    whit_shader *shader = NULL;
+    whit_image *loaded = NULL, *before = ramp_with_legend(), *after;
+    whit_difference difference;
+    char text[32];
+    uint64_t hash = hash_of(obj);
+    expect_commas();
+    assert_int_equal(whit_shader_compiler_create(NULL, NULL, &compiler), WHIT_OK);
+    assert_int_equal(
+        whit_shader_load(compiler, WHIT_SCENES_DIR "/../shaders/examples/sdf.glsl", false, &shader),
+        WHIT_OK);
+    assert_int_equal(whit_image_load(pfm, NULL, NULL, &loaded), WHIT_OK);
+    assert_true(whit_image_floats(loaded)[0] == 0.5f);
+    assert_int_equal(hash_of(obj), hash);
+    whit_probe_value_text(&vector, 9, text, sizeof text);
+    assert_string_equal(text, "(0.5, 1.5)");
+    after = ramp_with_legend();
+    assert_int_equal(whit_image_compare(before, after, NULL, NULL, &difference, NULL), WHIT_OK);
+    assert_int_equal(difference.differing_pixels, 0);
+    setlocale(LC_NUMERIC, "C");
+    whit_image_destroy(before);
+    whit_image_destroy(after);
+    whit_image_destroy(loaded);
+    whit_shader_destroy(shader);
+    whit_shader_compiler_destroy(compiler);
 }
 
 /* Wrapped at link time: the limits of the last child. */
