@@ -11,6 +11,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -35,10 +36,20 @@
 #endif
 
 enum { EXIT_REPLY = 121, EXIT_OPEN, POLL_MS = 10, PIPE_BYTES = 1 << 20, ROOM_MIN = 1 << 20 };
+enum { STATUS_UNKNOWN = -1 };
+
+/* The child's last words. The program may ignore SIGCHLD, or wait for all children: then waitpid()
+   does not tell how this one ended. */
+struct farewell {
+    char mark[7];
+    uint8_t exit_code;
+};
+static const char FAREWELL_MARK[7] = "the end";
 
 struct child {
     pid_t pid;
-    int read_fd, write_fd; /* the pipe: first one byte, errno of the sandbox or 0; then the reply */
+    int read_fd, write_fd; /* the pipe: first one byte, errno of the sandbox or 0; then the reply,
+                              and a farewell */
     uint8_t *data;         /* received so far, at the start of `room_bytes` of address space */
     size_t size_bytes, room_bytes;
     uint8_t open_because;
@@ -113,10 +124,15 @@ static int run_inside(const struct child_limits *limits, child_fn fn, void *user
        forbids. */
     (void)mallopt(M_TRIM_THRESHOLD, INT_MAX);
     uint8_t error = (uint8_t)sandbox_enter();
-    if (!platform_write(SANDBOX_REPLY_FD, &error, 1) || (error && limits->require_sandbox))
-        return EXIT_OPEN;
-    int code = fn(user, &whole, write_reply);
-    return whole ? code : EXIT_REPLY;
+    int code = EXIT_OPEN;
+    if (platform_write(SANDBOX_REPLY_FD, &error, 1) && !(error && limits->require_sandbox)) {
+        code = fn(user, &whole, write_reply);
+        code = whole ? code : EXIT_REPLY;
+    }
+    struct farewell farewell = {.exit_code = (uint8_t)code};
+    memcpy(farewell.mark, FAREWELL_MARK, sizeof farewell.mark);
+    (void)platform_write(SANDBOX_REPLY_FD, &farewell, sizeof farewell);
+    return code;
 }
 
 static void close_fd(int *fd)
@@ -147,7 +163,8 @@ static bool open_channels(struct child *child, const struct child_limits *limits
 {
     int ends[2];
     *child = (struct child){.pid = -1, .read_fd = -1, .write_fd = -1};
-    if (!make_room(child, limits->reply_bytes) || pipe2(ends, O_CLOEXEC) != 0)
+    if (!make_room(child, limits->reply_bytes + sizeof(struct farewell)) ||
+        pipe2(ends, O_CLOEXEC) != 0)
         return false;
     child->read_fd = ends[0];
     child->write_fd = ends[1];
@@ -255,8 +272,22 @@ static bool reap(pid_t pid, int flags, int *status)
         ended = waitpid(pid, status, flags);
     while (ended < 0 && errno == EINTR);
     if (ended < 0)
-        *status = SIGABRT; /* other code has waited for the child: its end is unknown */
+        *status = STATUS_UNKNOWN;
     return ended != 0;
+}
+
+/* Takes the farewell off the reply. Gives the status of waitpid(), or else what the child said. */
+static int hear_farewell(struct child *child, int status)
+{
+    struct farewell farewell = {0};
+    if (!child->over && child->size_bytes >= sizeof farewell)
+        memcpy(&farewell, child->data + child->size_bytes - sizeof farewell, sizeof farewell);
+    bool said = memcmp(farewell.mark, FAREWELL_MARK, sizeof farewell.mark) == 0;
+    if (said)
+        child->size_bytes -= sizeof farewell;
+    if (status != STATUS_UNKNOWN)
+        return status;
+    return said ? W_EXITCODE(farewell.exit_code, 0) : SIGABRT;
 }
 
 double child_clock_limit_s(const struct child_limits *limits)
@@ -332,6 +363,7 @@ enum child_end child_run(const struct child_limits *limits, child_fn fn, void *u
     reply->open_because = child.open_because;
     if (end != CHILD_DONE)
         goto done;
+    status = hear_farewell(&child, status);
     if (WIFSIGNALED(status)) {
         reply->signal = WTERMSIG(status);
         end = limits->cancel && *limits->cancel ? CHILD_CANCELLED : end_of_signal(reply->signal);

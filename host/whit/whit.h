@@ -26,7 +26,9 @@
    that logs, as it would wait for itself.
 
    The program may have set any locale: numbers in files, and in texts of the library, have a point.
-   Threads that call the library round to nearest (fenv.h), as programs begin.
+   Threads that call the library round to nearest (fenv.h), as programs begin. Foreign files are
+   read in child processes, which the library waits for; the program may ignore SIGCHLD, and wait
+   for all children.
 
    fork(): in the child, the parent's devices and what was made from them can be neither used nor
    destroyed, since threads of their drivers are missing there. It creates its own, and ends by

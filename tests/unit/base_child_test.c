@@ -196,6 +196,22 @@ TEST(crashes_are_told_apart)
     }
 }
 
+/* A program that ignores SIGCHLD leaves nothing to wait for. */
+TEST(ends_are_known_without_a_status)
+{
+    struct child_reply reply;
+    uint32_t count = 100000;
+    int code = CHILD_EXIT_MEMORY, number = SIGSEGV;
+    signal(SIGCHLD, SIG_IGN);
+    assert_int_equal(child_run(&ordinary, reply_words, &count, &reply), CHILD_DONE);
+    assert_int_equal(reply.exit_code, 0);
+    assert_int_equal(reply.size_bytes, count * sizeof count);
+    child_reply_free(&reply);
+    assert_int_equal(child_run(&ordinary, silent, &code, &reply), CHILD_MEMORY);
+    assert_int_equal(child_run(&ordinary, die, &number, &reply), CHILD_CRASHED);
+    signal(SIGCHLD, SIG_DFL);
+}
+
 static int spin(void *user, void *to, child_write write)
 {
     (void)user, (void)to, (void)write;
