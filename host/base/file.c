@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "base/array.h"
+#include "base/hash.h"
 #include "base/input.h"
 #include "base/platform.h"
 
@@ -187,21 +188,67 @@ static void remove_left(const char *path)
         close(fd);
 }
 
+/* The hidden files of a folder that may be unfinished. A folder is listed anew after as many writes
+   as it has thousands of entries, so that the time of a write does not grow with them; at each
+   write where more hidden files are there than are kept. */
+enum { LISTINGS = 4, ENTRIES_A_WRITE = 1000, HIDDEN_KEPT = 8 };
+struct listing {
+    uint64_t folder; /* hash of its path */
+    uint64_t entries, writes;
+    uint32_t count;
+    char hidden[HIDDEN_KEPT][NAME_MAX + 1];
+};
+static struct listing listings[LISTINGS]; /* guarded by begin_lock */
+
+/* Removes `name` if it is an unfinished file for `target` that a killed run left. */
+static void sweep_one(const char *folder, const char *target, const char *name)
+{
+    pid_t writer = writer_of(name, target);
+    char *path = writer && !is_alive(writer, name) ? string_format("%s%s", folder, name) : NULL;
+    if (path)
+        remove_left(path);
+    free(path);
+}
+
+/* Lists the folder anew, and sweeps it meanwhile. */
+static void list(struct listing *listing, const char *folder, const char *target)
+{
+    DIR *dir = opendir(folder[0] ? folder : ".");
+    bool keeps_all = true;
+    listing->entries = listing->writes = listing->count = 0;
+    for (struct dirent *entry; dir && (entry = readdir(dir)); ++listing->entries) {
+        const char *name = entry->d_name;
+        if (name[0] != '.' || !path_is(name, "tmp"))
+            continue;
+        sweep_one(folder, target, name);
+        keeps_all = keeps_all && listing->count < HIDDEN_KEPT;
+        if (keeps_all)
+            strcpy(listing->hidden[listing->count++], name);
+    }
+    if (!keeps_all)
+        listing->entries = 0;
+    if (dir)
+        closedir(dir);
+}
+
 /* Removes unfinished files for `target` that killed runs left beside it. */
 static void sweep(const char *folder, const char *target)
 {
-    DIR *dir = opendir(folder[0] ? folder : ".");
-    for (struct dirent *entry; dir && (entry = readdir(dir));) {
-        pid_t writer = writer_of(entry->d_name, target);
-        char *path = writer && !is_alive(writer, entry->d_name)
-                         ? string_format("%s%s", folder, entry->d_name)
-                         : NULL;
-        if (path)
-            remove_left(path);
-        free(path);
+    static uint32_t turn;
+    uint64_t key = hash_bytes(HASH_START, folder, strlen(folder));
+    struct listing *listing = listings;
+    while (listing < listings + LISTINGS && listing->folder != key)
+        ++listing;
+    bool known = listing < listings + LISTINGS;
+    if (!known)
+        listing = &listings[turn++ % LISTINGS];
+    listing->folder = key;
+    if (!known || ++listing->writes * ENTRIES_A_WRITE > listing->entries) {
+        list(listing, folder, target);
+        return;
     }
-    if (dir)
-        closedir(dir);
+    for (uint32_t i = 0; i < listing->count; ++i)
+        sweep_one(folder, target, listing->hidden[i]);
 }
 
 /* Takes the slot before the file exists, so that a signal just after open() finds it. A file that

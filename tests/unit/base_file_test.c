@@ -6,9 +6,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "../wrapped.h"
 #include "base/array.h"
 #include "base/file.h"
 #include "folder_fixture.h"
+
+static uint32_t folders_opened;
+
+WRAPPED(DIR *, opendir, const char *path)
+{
+    ++folders_opened;
+    return __real_opendir(path);
+}
 
 /* A log that takes messages of all levels. */
 static const whit_log full_log = {
@@ -221,6 +230,27 @@ TEST_IN(files_of_killed_runs_are_swept, folder_begin, folder_end)
     }
     assert_content(path, "whole");
     assert_int_equal(entry_count(), 1);
+}
+
+/* A write into a folder of many files takes no longer than one into a small folder: the folder is
+   listed for a few writes together, and what a killed run left is swept all the same. */
+TEST_IN(a_large_folder_is_not_listed_for_each_write, folder_begin, folder_end)
+{
+    enum { FILES = 2500, WRITES = 8 };
+    char name[16], *left = leave(ended_process(), "", "half");
+    for (int i = 0; i < FILES; ++i) {
+        snprintf(name, sizeof name, "%d", i);
+        put_text(name, "");
+    }
+    folders_opened = 0;
+    for (int i = 0; i < WRITES; ++i) {
+        snprintf(name, sizeof name, "b%d", i);
+        put(in_folder(name), "x");
+    }
+    put(in_folder("a.txt"), "whole");
+    assert_int_equal(folders_opened, 3);
+    assert_false(is_there(left));
+    free(left);
 }
 
 /* Files are left alone where the process that made them still runs, where their names are of
