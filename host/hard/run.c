@@ -293,6 +293,9 @@ static whit_result check_params(const struct hard_run *run)
                            (unsigned long long)run->ray_count, RAYS_HASHED, UINT32_MAX / 2);
     if (run->levels >> LEVELS)
         return log_failure(&run->log, WHIT_ERROR_USAGE, "levels %#x: there are three", run->levels);
+    if (!(run->params->time_limit_s >= 0.0))
+        return log_failure(&run->log, WHIT_ERROR_USAGE, "a time limit of %g s: must not be below 0",
+                           run->params->time_limit_s);
     return WHIT_OK;
 }
 

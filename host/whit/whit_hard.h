@@ -21,7 +21,7 @@ typedef struct whit_hard_params {
     whit_instances instances; /* for `scene` as it is given; its variants and the built-in cases set
                                  their own */
     const volatile bool *cancel;
-    double time_limit_s; /* 0: none */
+    double time_limit_s; /* not below 0; 0: none */
     void (*progress)(void *user, double done);
     void *progress_user;
 } whit_hard_params;

@@ -78,7 +78,7 @@ bool whit_image_format_known(const char *path, bool integers);
    can tell apart (viridis): dark is 0, bright is `scale` and above. The result is linear RGB and
    wide enough for a readable legend; narrower images are centred in it. */
 typedef struct whit_heat_params {
-    double scale;      /* 0: whit_image_heat_scale */
+    double scale;      /* finite, not below 0; 0: whit_image_heat_scale */
     const char *title; /* of the legend, or NULL; ASCII, shortened when it does not fit */
     const char *unit;  /* of the numbers, at the legend's right end, or NULL */
     bool is_signed;    /* colours from -scale (blue) over 0 (white) to scale (brown); an image of
@@ -87,7 +87,8 @@ typedef struct whit_heat_params {
 /* The 99.5th percentile of the values, rounded up to a round number. Where it is 0, the largest
    value is rounded up instead; 1 where all values are 0. */
 double whit_image_heat_scale(const whit_image *values);
-/* WHIT_ERROR_USAGE unless the image has one channel of floats, or three with `is_signed`. */
+/* WHIT_ERROR_USAGE unless the image has one channel of floats, or three with `is_signed`, and for
+   a scale out of range. */
 WHIT_CHECK whit_result whit_image_heat(const whit_image *values, const whit_heat_params *params,
                                        whit_image **out);
 

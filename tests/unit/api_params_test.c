@@ -238,6 +238,11 @@ TEST_IN(judges_refuse_values_out_of_range, begin, device_end)
                      "a time of nan s");
     const whit_hard_params run = {.instances = (whit_instances)9};
     refused(whit_hard_run(NULL, scene, &run, &warnings_log, &report), "instances 9");
+    const double limits[] = {NAN, -1.0};
+    for (int i = 0; i < 2; ++i) {
+        const whit_hard_params never = {.time_limit_s = limits[i]};
+        refused(whit_hard_run(NULL, scene, &never, &warnings_log, &report), "a time limit of");
+    }
 }
 
 static bool first_triangle(void *user, const whit_triangle *triangle)
