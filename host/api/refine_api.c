@@ -48,12 +48,18 @@ whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_para
         return API_FAIL(&renderer->log, WHIT_ERROR_USAGE,
                         "what `post` of the shader makes of the mean of samples is not the "
                         "mean of what it makes of them: such a picture is not refined");
+    if (renderer->params.color_only)
+        return API_FAIL(&renderer->log, WHIT_ERROR_USAGE,
+                        "the renderer keeps colours alone (color_only), and errors are estimated "
+                        "from more: its picture is not refined");
     whit_refine *refine = calloc(1, sizeof *refine);
     if (!refine)
         return API_FAIL(&renderer->log, WHIT_ERROR_MEMORY, "out of memory");
     refine->log = renderer->log;
     whit_refine_move(refine, renderer, params);
-    result = whit_renderer_set_view(renderer, &refine->params);
+    result = params_check(&refine->log, &refine->params);
+    if (result == WHIT_OK)
+        result = whit_renderer_set_view(renderer, &refine->params);
     if (result == WHIT_OK)
         *out = refine;
     else
@@ -158,7 +164,7 @@ whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float
 {
     const whit_renderer_params *params = &refine->params;
     struct part part = {0};
-    if (refine->samples > 0 || samples == 0 || params->width == 0 || params->height == 0)
+    if (refine->samples > 0 || samples == 0)
         return API_FAIL(&refine->log, WHIT_ERROR_USAGE,
                         "a picture can be refined from its first sample on, and once");
     if (samples > WHIT_SAMPLES_MAX)

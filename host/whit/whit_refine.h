@@ -29,8 +29,9 @@ typedef struct whit_refine_info {
 } whit_refine_info;
 
 /* `renderer` is borrowed until whit_refine_destroy, and draws nothing else meanwhile. `params` are
-   as for whit_renderer_set_view and borrowed as there; their sampling is not read. WHIT_ERROR_USAGE
-   as there, without a device, and for a shader with `post`. */
+   as for whit_renderer_set_view and borrowed as there; their sampling and rows are not read, for
+   whole pictures are refined. WHIT_ERROR_USAGE as there, without a device, for a shader with
+   `post`, and for a renderer made with color_only. */
 WHIT_CHECK whit_result whit_refine_create(whit_renderer *renderer,
                                           const whit_renderer_params *params, whit_refine **out);
 void whit_refine_destroy(whit_refine *refine);

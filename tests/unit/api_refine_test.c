@@ -200,11 +200,26 @@ TEST(what_is_not_there_is_refused)
                      WHIT_ERROR_USAGE);
     assert_true(refine_to(&o, WHIT_SAMPLES_MAX).last);
     assert_int_equal(whit_refine_step(o.refine), WHIT_ERROR_USAGE);
-    own_whit_renderer *no_device = NULL;
+    own_whit_renderer *no_device = NULL, *bare = NULL;
     whit_refine *refine = NULL;
     assert_int_equal(whit_renderer_create(NULL, accel, &o.params, &no_device), WHIT_OK);
     assert_int_equal(whit_refine_create(no_device, &o.params, &refine), WHIT_ERROR_USAGE);
     assert_null(refine);
+    o.params.color_only = true;
+    bare = renderer_of(&o.params);
+    assert_int_equal(whit_refine_create(bare, &o.params, &refine), WHIT_ERROR_USAGE);
+    assert_null(refine);
+}
+
+TEST(a_picture_of_the_usual_size_begins_as_any)
+{
+    const whit_renderer_params params = params_sized(0, 0, NULL);
+    scene_open(WHIT_SCENES_DIR "/cube.json");
+    own_refining o = begin(&params);
+    float *zeros = calloc(640 * 480, 4 * sizeof *zeros);
+    assert_non_null(zeros);
+    assert_int_equal(whit_refine_begin(o.refine, 4, zeros, zeros), WHIT_OK);
+    free(zeros);
 }
 
 /* ---- The estimate compared with the true error ---- */
