@@ -161,6 +161,29 @@ def test_what_goes_wrong_says_why(renderer, tmp_path):
         whit.Scene(CUBE, allow="/nowhere")
 
 
+def test_threads_get_their_own_errors(renderer, monkeypatch):
+    create, both, said = whit._library.whit_renderer_create, threading.Barrier(2, timeout=30), {}
+
+    def create_and_wait(*arguments):
+        result = create(*arguments)
+        both.wait()
+        return result
+
+    def refuse(count):
+        try:
+            whit.Renderer(renderer.scene, whit.CPU, samples=count)
+        except whit.Error as error:
+            said[count] = str(error)
+
+    monkeypatch.setattr(whit._library, "whit_renderer_create", create_and_wait)
+    threads = [threading.Thread(target=refuse, args=(count,)) for count in (5001, 5002)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert said == {count: f"{count} samples a pixel: must be 1..4096" for count in (5001, 5002)}
+
+
 def test_warnings_are_logged(tmp_path, caplog):
     (tmp_path / "a.obj").write_text("mtllib no.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     with caplog.at_level(logging.WARNING, "whit"):

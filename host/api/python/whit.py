@@ -11,9 +11,10 @@
 
 numpy.asarray() makes arrays of all of these without a copy, and `out=` takes an array of one's own. What goes wrong
 is an Error with whit's own message; warnings go to logging.getLogger("whit"). An object is used by one thread at a
-time; it lives as long as what was made from it, and close() or `with` lets go of it. A child of os.fork() makes objects
-of its own, and ends by os._exit(), as those of multiprocessing do. Names of parameters, units and defaults are those of whit.h, and words
-of enumerations are the last ones of its names: numerics="exact" is WHIT_NUMERICS_EXACT.
+time, but renderers of several threads may share a scene and a device. It lives as long as what was made from it, and
+close() or `with` lets go of it. A child of os.fork() makes objects of its own, and ends by os._exit(), as those of
+multiprocessing do. Names of parameters, units and defaults are those of whit.h, and words of enumerations are the last
+ones of its names: numerics="exact" is WHIT_NUMERICS_EXACT.
 
 The library is $WHIT_LIBRARY, or the libwhit.so of the prefix that this file is installed in, or else the system's.
 """
@@ -211,22 +212,32 @@ class _Hearing:
     """Where a handle's messages go: errors are kept for the exception, others are logged."""
 
     def __init__(self):
-        self.errors = []
+        self.errors = []  # (thread, text)
         self._fn = _LogFn(self._hear)
         self.log = Log(fn=self._fn, level=LogLevel.WARNING)
 
     def _hear(self, _user, level, text):
         text = text.decode("utf-8", "replace")
         if level == LogLevel.ERROR:
-            self.errors.append(text)
+            self.errors.append((threading.get_ident(), text))
         else:
             logging.getLogger("whit").warning("%s", text)
 
 
-def _check(result, *hearings):
-    lines = [line for hearing in hearings for line in hearing.errors]
+def _take_errors(hearings):
+    """The errors of this thread's calls, and of threads that only the library knows; those of others stay."""
+    lines = []
     for hearing in hearings:
-        hearing.errors.clear()
+        others = {one.ident for one in threading.enumerate()} - {threading.get_ident()} if hearing.errors else ()
+        for error in list(hearing.errors):
+            if error[0] not in others:
+                hearing.errors.remove(error)
+                lines.append(error[1])
+    return lines
+
+
+def _check(result, *hearings):
+    lines = _take_errors(hearings)
     if result != Result.OK:
         raise Error(result, lines)
 
@@ -563,8 +574,7 @@ class Renderer(_Closing):
         with _Calling(progress.cancel):
             result = progress.run(function, self._opened(), *arguments)
         if progress.raised is not None:
-            for hearing in self._hearings:
-                hearing.errors.clear()
+            _take_errors(self._hearings)
             raise progress.raised
         _check(result, *self._hearings)
 
