@@ -227,6 +227,13 @@ bool settings_same_scene(const struct settings *a, const struct settings *b)
            same_rows(a, b, is_of_scene);
 }
 
+void settings_set_scene(struct settings *settings, const struct settings *from)
+{
+    memcpy(settings->scene, from->scene, sizeof settings->scene);
+    settings->reload = from->reload;
+    copy_rows(settings, from, is_of_scene);
+}
+
 bool settings_same_trees(const struct settings *a, const struct settings *b)
 {
     return settings_same_scene(a, b) && same_rows(a, b, is_of_trees);

@@ -129,6 +129,8 @@ uint64_t settings_hash_scene(const struct settings *settings);
 uint64_t settings_hash_kernel(const struct settings *settings);
 /* Whether `a` and `b` build the same trees. */
 bool settings_same_trees(const struct settings *a, const struct settings *b);
+/* Copies the scene, and all settings that it is loaded with. */
+void settings_set_scene(struct settings *settings, const struct settings *from);
 /* Whether camera, time and size are the same, even of different scenes. */
 bool settings_same_camera(const struct settings *a, const struct settings *b);
 /* Copies camera, time and size. */

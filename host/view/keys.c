@@ -348,7 +348,7 @@ static void escape(struct view *view)
             panels_switch_effects(view);
         return;
     }
-    if (view_go_back(view)) {
+    if (scenes_stop(view) || view_go_back(view)) {
         view_say(view, "stopped: as it was");
         return;
     }

@@ -163,10 +163,35 @@ void scenes_read_again(struct view *view)
     view_say(view, "reading %s again", path_name(view->asked));
 }
 
-bool scenes_refuse(struct view *view)
+/* Goes back to the scene that is shown. */
+static void go_back(struct view *view)
 {
     struct settings *settings = &view->settings;
     const struct settings *back = &view->fallback;
+    settings_set_scene(settings, back);
+    view->dirty = true;
+    if (view->camera_known) /* the same scene was read again: its camera stays */
+        return;
+    memcpy(settings->camera, back->camera, sizeof settings->camera);
+    settings->picture.time_s = back->picture.time_s;
+    view->clock.playing = view->played;
+    view->clock.last_ms = view_now_ms(view);
+    view_learn_camera(view);
+}
+
+bool scenes_stop(struct view *view)
+{
+    if (settings_same_scene(&view->settings, &view->fallback))
+        return false;
+    go_back(view);
+    scenes_forget(view);
+    view->asked[0] = '\0';
+    return true;
+}
+
+bool scenes_refuse(struct view *view)
+{
+    const struct settings *settings = &view->settings, *back = &view->fallback;
     if (settings_same_scene(settings, back))
         return false;
     if (strcmp(view->refused, view->status.error) != 0) {
@@ -179,18 +204,7 @@ bool scenes_refuse(struct view *view)
         set_asked(view, settings->scene);
         engine_watch_unread(view->engine, view->watch_asked);
     }
-    settings->reload = back->reload;
-    memcpy(settings->environment, back->environment, sizeof settings->environment);
-    view->dirty = true;
-    if (view->camera_known) /* the same scene was read again: its camera stays */
-        return true;
-    memcpy(settings->scene, back->scene, sizeof settings->scene);
-    memcpy(settings->camera, back->camera, sizeof settings->camera);
-    memcpy(settings->clip, back->clip, sizeof settings->clip);
-    settings->picture.time_s = back->picture.time_s;
-    view->clock.playing = view->played;
-    view->clock.last_ms = view_now_ms(view);
-    view_learn_camera(view);
+    go_back(view);
     return true;
 }
 

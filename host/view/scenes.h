@@ -18,6 +18,8 @@ void scenes_show(struct view *view);
 /* Call it when the request failed: shows the error, each one once, and goes back to the scene that
    is shown. False: it is the shown scene that failed. */
 bool scenes_refuse(struct view *view);
+/* Goes back to the scene that is shown. False: no other is asked for. */
+bool scenes_stop(struct view *view);
 /* Forgets the error of a refused scene, and stops watching its file. */
 void scenes_forget(struct view *view);
 /* The folder that the user has to be asked about, as the scene names a file in it; NULL: none. */

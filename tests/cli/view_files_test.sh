@@ -156,14 +156,30 @@ END
     check "each error once on standard error" test "$(cut -d : -f 3,4 "$OUT/stderr" | tr '\n' ' ')" = \
         " own.json:$line  own.json:$line  late.json: there is no such file "
     EXPECTED=
-    # So it is if it was written while another scene was shown.
+    # If it cannot be read again for another setting, this setting is given up, and the scene that is shown stays.
+    EXPECTED="^whit: error: gone.json: there is no such file"
+    cp "$CUBE" gone.json
+    play "a file that is gone" gone.json --size 320x240 <<END
+start: | error =
+do mv gone.json kept.json && touch gone
+gone: await gone, press Tab, still, choose light, still, choose none | error has gone.json | words as start
+moved: press Tab, press 1, press T | frame.ids not as gone | words has --traversal sign
+do mv kept.json gone.json
+until error = $NONE
+back: | frame.ids as moved
+none: press Tab, still, choose light, still, choose none | words has --light none | frame.pixels not as back
+END
+    EXPECTED=
+    # It is also read again if it was written while another scene was shown. Escape ends the opening of a file.
     cp "$CUBE" own.json
     sed 's/#d98a3d/#0000ff/' "$CUBE" >blue.json
     play "written unseen" own.json --size 96x64 <<END
 start:
 other: drop $SCENES/8k.json
 do mv blue.json own.json && touch written
-back: await written, drop own.json, until toast = own.json was written: reading it again | frame.ids as start
+stopped: await written, drop own.json, press Escape | toast = stopped: as it was | scene = $SCENES/8k.json
+    | frame.pixels as other | render as other
+back: drop own.json, until toast = own.json was written: reading it again | frame.ids as start
     | frame.pixels not as start
 same: drop $SCENES/8k.json, wait 9000, still, drop own.json | frame.made is frame.made of back | toast =
 END
