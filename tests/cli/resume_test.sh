@@ -113,6 +113,11 @@ if part 1 2; then
     refuse 2 "frames of another pattern" "wrong:2: its -o is the -o of line 1" batch wrong
     printf "'$SWARM' --size 2x2 -o %s\n" 'v2.#.png --frames 9-10' 'v2.##.png --frames 9-9' v2.11.png v3.10.png >right
     expect 0 "other names" batch right
+    for option in "-o m1.pfm" "-o m1.png --thumbnail 8"; do
+        printf "'$CUBE' $option\nnowhere.json -o m2.png\n" >wrong
+        expect 2 "a line that cannot be drawn" batch wrong
+        check "$option: no command that --resume would refuse" sh -c "! grep -q 'to go on' '$OUT/stderr'"
+    done
     expect 5 "a time limit" batch lines --time-limit 0.001
     check "says how lines go on" grep -q "^whit: to go on: whit batch lines --time-limit 0.001 --resume$" "$OUT/stderr"
 fi

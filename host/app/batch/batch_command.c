@@ -222,11 +222,8 @@ static int print_stats(const struct batch *batch)
 static int work(struct batch *batch, const struct settings *own)
 {
     const struct job clock = {.settings = *own};
-    int status = lines_init(&batch->lines, &batch->line);
-    if (status != EXIT_FINE)
-        return status;
     job_start(&clock);
-    status = draw(batch);
+    int status = draw(batch);
     cli_progress_finish(&batch->progress.bar);
     if (status != EXIT_FINE && !cli_cancel && !own->quiet) {
         cli_note("%u of %u lines were drawn", batch->done, batch->lines.count);
@@ -255,9 +252,11 @@ static int run(const struct cli_command *command, int argc, char **argv)
         job.settings.quiet |= batch->request.json;
         batch->lines = (struct lines){
             .path = reader.positional, .own = &job.settings, .resume = batch->request.resume};
-        if (told)
+        status = lines_init(&batch->lines, &batch->line);
+        if (status == EXIT_FINE && told && batch->lines.keeps)
             resume_keep_line(batch->request.resume, argc, argv);
-        status = work(batch, &job.settings);
+        if (status == EXIT_FINE)
+            status = work(batch, &job.settings);
     }
     drop(batch);
     lines_finish(&batch->lines);

@@ -6,6 +6,7 @@
 #include "app/arguments.h"
 #include "app/commands.h"
 #include "app/render/render_command.h"
+#include "app/render/resume.h"
 #include "base/array.h"
 #include "base/file.h"
 #include "base/text.h"
@@ -143,6 +144,7 @@ int lines_init(struct lines *lines, struct line *line)
     size_t bytes;
     whit_result result = file_read(&cli_log, NULL, lines->path, FILE_BYTES_MAX, &text, &bytes);
     lines->text = (char *)text;
+    lines->keeps = true;
     if (result == WHIT_OK && strlen(lines->text) != bytes)
         result = CLI_FAIL(WHIT_ERROR_INPUT, "%s: no lines: it has bytes that are 0", lines->path);
     if (result == WHIT_OK)
@@ -158,6 +160,7 @@ int lines_init(struct lines *lines, struct line *line)
         const struct settings *settings = &line->job.settings;
         uint32_t number = place->number;
         lines->compile |= settings_compiles(settings);
+        lines->keeps &= resume_keeps(&line->request);
         if (!find_first(lines, settings_hash_scene(settings), number, &place->scene) ||
             !find_first(lines, settings_hash_kernel(settings), number, &place->kernel) ||
             !outputs_add(&lines->outputs, &line->request, number))

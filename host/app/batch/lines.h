@@ -22,6 +22,7 @@ struct lines {
     char *text;
     const struct settings *own; /* settings of the command itself */
     bool resume;                /* --resume of the command, for all lines */
+    bool keeps;                 /* --resume can keep the files of all lines */
     struct line_place *places;  /* in the order in which they are drawn */
     uint32_t count, capacity;
     struct outputs outputs;  /* while lines are read */

@@ -130,6 +130,11 @@ whit_result resume_wait(void)
 
 /* ---- The line that goes on ---- */
 
+bool resume_keeps(const struct render_request *request)
+{
+    return has_recipe(request) && !request->cameras.file && !request->thumbnail;
+}
+
 bool resume_leaves_files(const struct render_request *request)
 {
     bool parts = (request->frames.given && !request->cameras.file) ||

@@ -25,6 +25,9 @@ bool resume_check(struct cli_reader *reader, const struct job *job,
                   const struct render_request *request);
 /* Waits a moment for other processes. */
 whit_result resume_wait(void);
+/* Whether --resume can keep the files of a line of `whit batch`, whose other options are checked.
+ */
+bool resume_keeps(const struct render_request *request);
 /* Whether interrupted work leaves finished files, which --resume would keep. */
 bool resume_leaves_files(const struct render_request *request);
 /* Prepares the command that continues interrupted work, for its message: the words of this command,
