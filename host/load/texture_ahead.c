@@ -7,7 +7,7 @@
 #include "base/array.h"
 #include "base/threads.h"
 
-/* Encoded pictures are kept up to this size together. */
+/* Encoded pictures are kept up to this size together, and up to the scene's limit on memory. */
 #define BYTES_MAX ((uint64_t)256 << 20)
 
 struct entry {
@@ -78,7 +78,8 @@ void load_texture_soon(struct scene *scene, const char *path, const uint8_t *dat
 {
     if (!scene->ahead)
         scene->ahead = array_alloc_zeroed(1, sizeof *scene->ahead);
-    if (!scene->ahead || scene->ahead->bytes > BYTES_MAX)
+    if (!scene->ahead || scene->ahead->bytes > BYTES_MAX ||
+        scene->ahead->bytes > scene_room(scene))
         return;
     char *name = data ? string_copy(path) : picture_find(&scene->roots, path);
     struct entry *entry = name ? array_alloc_zeroed(1, sizeof *entry) : NULL;
