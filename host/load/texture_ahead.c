@@ -78,8 +78,7 @@ void load_texture_soon(struct scene *scene, const char *path, const uint8_t *dat
 {
     if (!scene->ahead)
         scene->ahead = array_alloc_zeroed(1, sizeof *scene->ahead);
-    if (!scene->ahead || scene->ahead->bytes > BYTES_MAX ||
-        scene->ahead->bytes > scene_room(scene))
+    if (!scene->ahead || scene->ahead->bytes > BYTES_MAX || scene->ahead->bytes > scene_room(scene))
         return;
     char *name = data ? string_copy(path) : picture_find(&scene->roots, path);
     struct entry *entry = name ? array_alloc_zeroed(1, sizeof *entry) : NULL;
