@@ -162,6 +162,16 @@ if part 1 2; then
     done
     check "the second has the choice of the first" \
         test "$(cat "$OUT"/cache/whit/cost-* | grep -ao '"budget_ms": *3333333' | wc -l)" -eq 1
+    # A run that another one overtakes keeps the other's choice.
+    "$WHIT" render $tiny --budget-ms 2000001 >"$OUT/slow.stdout" 2>"$OUT/slow.stderr" &
+    slow=$!
+    until grep -q "by figures of" "$OUT/slow.stderr" || ! kill -0 $slow 2>/dev/null; do sleep 0.01; done
+    kill -STOP $slow
+    expect 0 "a run beside one that is slower" render $tiny --budget-ms 2000002
+    kill -CONT $slow
+    wait $slow
+    check "both choices are kept" \
+        test "$(cat "$OUT"/cache/whit/cost-* | grep -ao '"budget_ms": *200000[12]' | wc -l)" -eq 2
     # A choice whose tries took too long is tried again.
     wrong noisy expect 0 "a time that slow tries exceed" render $tiny --budget-ms 160
     check "says so" grep -q "it is likely to take more than 160 ms" "$OUT/stderr"

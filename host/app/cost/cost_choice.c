@@ -125,6 +125,7 @@ static void say_choice(const struct job *job, const struct cost_choice *choice, 
 struct choosing {
     struct job *job;
     const struct cost_report *report;
+    const struct cost_place *place;
     const struct render_request *request;
     struct frames_progress *progress;
     struct settings before;
@@ -346,7 +347,7 @@ static whit_result smooth_edges(const struct choosing *choosing, struct cost_kep
     return result;
 }
 
-static whit_result choose_within(const struct choosing *choosing, struct cost_kept *kept)
+static whit_result choose_within(const struct choosing *choosing, const struct cost_kept *kept)
 {
     const struct cost_kept_choice *known = cost_kept_find(kept, choosing->before.budget_ms);
     struct cost_kept_choice found = {0};
@@ -362,10 +363,8 @@ static whit_result choose_within(const struct choosing *choosing, struct cost_ke
     }
     if (result != WHIT_OK)
         return result;
-    if (!known) {
-        cost_kept_add(kept, &found);
-        cost_kept_save(kept);
-    }
+    if (!known)
+        cost_kept_add(choosing->place, kept, &found);
     say_choice(choosing->job, &found.choice, found.tried_ms);
     choosing->progress->predicted_ms = found.tried_ms;
     if (found.tried_ms > found.budget_ms && !choosing->job->settings.quiet)
@@ -392,13 +391,15 @@ whit_result render_choose(struct job *job, const struct render_request *request,
     struct cost_kept *kept = malloc(sizeof *kept);
     if (!kept)
         return cli_no_memory();
+    struct cost_place place = {0};
     const struct choosing choosing = {.job = job,
                                       .report = &kept->report,
+                                      .place = &place,
                                       .request = request,
                                       .progress = progress,
                                       .before = job->settings,
                                       .renderer = renderer};
-    struct cost_place place = {.settings = &choosing.before};
+    place.settings = &choosing.before;
     whit_scene_get_info(job->scene, &place.scene);
     whit_device_get_info(job->device, &place.device);
     whit_result result = find_figures(job, request->fresh, &place, kept);

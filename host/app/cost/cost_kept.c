@@ -56,7 +56,7 @@ const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, doub
     return NULL;
 }
 
-void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice)
+static void add(struct cost_kept *kept, const struct cost_kept_choice *choice)
 {
     uint32_t drop = 0; /* the one for the same budget, or the oldest */
     while (drop < kept->choice_count &&
@@ -163,6 +163,19 @@ bool cost_kept_load(const struct cost_place *place, struct cost_kept *kept)
            strcmp(kept->report.driver, place->device.driver) == 0;
 }
 
+void cost_kept_add(const struct cost_place *place, const struct cost_kept *kept,
+                   const struct cost_kept_choice *choice)
+{
+    struct cost_kept *now = malloc(sizeof *now);
+    if (!now)
+        return;
+    if (!cost_kept_load(place, now))
+        *now = *kept;
+    add(now, choice);
+    cost_kept_save(now);
+    free(now);
+}
+
 /* ---- For the viewer ---- */
 
 bool cost_kept_load_figures(const struct cost_place *place, struct cost_kept_figures *figures)
@@ -192,9 +205,9 @@ void cost_kept_save_figures(const struct cost_place *place, const struct cost_ke
     if (!cost_kept_load(place, kept) || !figures->made[0])
         cost_kept_begin(kept, &figures->report);
     if (figures->choice.found)
-        cost_kept_add(kept, &(struct cost_kept_choice){.budget_ms = place->settings->budget_ms,
-                                                       .tried_ms = figures->choice_ms,
-                                                       .choice = figures->choice});
+        add(kept, &(struct cost_kept_choice){.budget_ms = place->settings->budget_ms,
+                                             .tried_ms = figures->choice_ms,
+                                             .choice = figures->choice});
     cost_kept_save(kept);
     free(kept);
 }

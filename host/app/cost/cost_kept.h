@@ -24,8 +24,11 @@ void cost_kept_save(const struct cost_kept *kept);
 void cost_kept_begin(struct cost_kept *kept, const struct cost_report *report);
 /* The choice for this budget whose tries took no longer, or NULL: the device may be faster now. */
 const struct cost_kept_choice *cost_kept_find(const struct cost_kept *kept, double budget_ms);
-/* Replaces the choice for the same budget, or else, where there is no room, the oldest. */
-void cost_kept_add(struct cost_kept *kept, const struct cost_kept_choice *choice);
+/* Adds the choice to the record as it is by now, since other runs may have added theirs, or else to
+   `kept`, and saves it. It replaces the one for the same budget, or, where there is no room, the
+   oldest. */
+void cost_kept_add(const struct cost_place *place, const struct cost_kept *kept,
+                   const struct cost_kept_choice *choice);
 /* view_params.load_figures and save_figures, which use the same record. */
 bool cost_kept_load_figures(const struct cost_place *place, struct cost_kept_figures *figures);
 void cost_kept_save_figures(const struct cost_place *place,
