@@ -17,8 +17,6 @@
 /* The rate of a pixel is taken to lie between these. */
 #define RATE_LOW       0.36
 #define RATE_HIGH      0.65
-/* The rate of a picture before its second doubling. */
-#define RATE_USUAL     0.6
 /* After each doubling an earlier change counts this part of the rate as much as before, because it
    was measured with fewer samples, and its sign is as likely to be the other. */
 #define FADES          0.8
@@ -99,11 +97,10 @@ static struct around sum_around(const struct estimate *estimate, uint32_t x, uin
     return sum;
 }
 
-/* By how much changes fall from doubling to doubling in the whole picture. */
+/* By how much changes fall from doubling to doubling in the whole picture. The first change alone
+   does not tell, and counts as one that does not fall. */
 static double picture_rate(const struct estimate *estimate)
 {
-    if (estimate->doublings < 2)
-        return RATE_USUAL;
     if (!(estimate->last < estimate->first))
         return 1.0;
     return same_pow(estimate->last / estimate->first, 1.0 / (estimate->doublings - 1));

@@ -224,8 +224,9 @@ TEST(a_picture_of_the_usual_size_begins_as_any)
 
 /* ---- The estimate compared with the true error ---- */
 
-/* Requirements for the estimate, over the pixels where it or the error exceeds SEEN: it is at least
-   the error in COVERED_MIN % of them, and the median of estimate / error is at most RATIO_MAX. */
+/* Requirements for the estimate, from SAMPLES_FIRST on, over the pixels where it or the error
+   exceeds SEEN: it is at least the error in COVERED_MIN % of them, and the median of estimate /
+   error is at most RATIO_MAX. */
 static const double COVERED_MIN = 95.0, RATIO_MAX = 8.0, SEEN = 1.0 / 512.0;
 enum { SAMPLES_FIRST = 16, SAMPLES_LAST = 64, TRUTH_SAMPLES = 256, TRUTH_DEPTH = 255 };
 
@@ -326,6 +327,13 @@ static bool is_good(const struct judged *judged)
     return judged->covered >= COVERED_MIN && judged->median <= RATIO_MAX;
 }
 
+/* The estimated RMSE is no less than the actual one from 2 samples on, except where few pixels show
+   small images of lights, and these samples met only some of them. */
+static bool is_too_few(const char *name, uint32_t samples)
+{
+    return strcmp(name, "default.json") == 0 && samples < 8;
+}
+
 /* Prints a row for each number of samples; true if the estimate meets the requirements in all. */
 static bool judge_scene(const char *path, const char *name)
 {
@@ -335,12 +343,17 @@ static bool judge_scene(const char *path, const char *name)
     own_whit_image *truth = truth_of(&o, question.truth_bailout);
     int pixels = (int)(question.params.width * question.params.height);
     bool good = true;
-    for (uint32_t samples = SAMPLES_FIRST; samples <= SAMPLES_LAST; samples *= 2) {
+    for (uint32_t samples = 2; samples <= SAMPLES_LAST; samples *= 2) {
         whit_refine_info info = refine_to(&o, samples);
         own_whit_image *picture = picture_of(&o), *estimate = NULL;
         assert_int_equal(whit_refine_error_image(o.refine, &estimate), WHIT_OK);
         struct judged judged = judge(whit_image_floats(estimate), whit_image_floats(picture),
                                      whit_image_floats(truth), pixels);
+        if ((info.error < judged.rmse) != is_too_few(name, samples))
+            fail_msg("%s: %u samples have an RMSE of %g, estimated as %g", name, samples,
+                     judged.rmse, info.error);
+        if (samples < SAMPLES_FIRST)
+            continue;
         print_message("| `%s` | %u | %d | %.1f | %.1f | %.4f | %.4f | %s |\n", name, samples,
                       judged.pixels, judged.covered, judged.median, info.error, judged.rmse,
                       is_good(&judged) ? "" : "short");
