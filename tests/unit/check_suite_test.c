@@ -144,6 +144,7 @@ TEST_IN(wrong_lines_are_told, folder_begin, folder_end)
         {"misspelt a.json --dpeth 3", "did you mean `--depth`"},
         {"value a.json --depth many", "--depth `many`"},
         {"both a.json --time 1 --frame 2", "two ways"},
+        {"rate a.json --time 1 --fps 2", "--fps is for --frame"},
         {"gone a.json --no-bvh", "is `--build none` now"},
         {"lost b.json", "the scene `b.json`: there is no such file"},
         {"folder sub", "the scene `sub`: it is a folder"},

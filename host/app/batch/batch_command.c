@@ -272,8 +272,10 @@ const struct cli_command command_batch = {
     .details =
         "A line is what `whit render` takes: a scene and options, with or without `whit render` "
         "in\n"
-        "front; # begins a remark. All lines are read before the first is drawn. Lines of one\n"
-        "scene are drawn one after the other, and share what is decoded, built and compiled.\n",
+        "front; a line that begins with # is a comment. All lines are read before the first is\n"
+        "drawn. Lines of one scene are drawn one after the other, and share what is decoded, "
+        "built\n"
+        "and compiled.\n",
     .options = options,
     .settings = IN_BATCH,
     .run = run,

@@ -161,6 +161,8 @@ static bool read_words(struct check_case *item, struct cli_reader *reader)
     if (strlen(scene) >= sizeof settings->scene)
         return cli_misuse(reader, "the scene's path is too long");
     strcpy(settings->scene, scene);
+    if (settings_given(settings, "fps") && !settings_given(settings, "frame"))
+        return cli_misuse(reader, "--fps is for --frame");
     return settings_check(settings, why) || cli_misuse(reader, "%s", why);
 }
 
