@@ -92,9 +92,11 @@ static bool is_still(struct view *view)
     if (view_plays(view))
         return true;
     engine_get_status(view->engine, &status);
+    /* `state` reports view->status, which may be older. */
     return is_settled(view, &status) && !status.drawing && !view_is_moving(view) &&
-           engine_is_still(view->engine) && compare_is_still(view) && is_priced(view) &&
-           wish_is_still(view) && (view->frame.number > 0 || status.error[0]);
+           view->status.stage == SESSION_DONE && engine_is_still(view->engine) &&
+           compare_is_still(view) && is_priced(view) && wish_is_still(view) &&
+           (view->frame.number > 0 || status.error[0]);
 }
 
 /* Whether a picture of the current settings was shown, of any quality, or there is an error. */
