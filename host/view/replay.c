@@ -1,3 +1,4 @@
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,10 +26,10 @@ whit_result replay_open(struct view *view)
     const struct view_params *params = view->params;
     if (params->record) {
         view->record = fopen(params->record, "w");
-        view->record_ms = clock_ms();
         if (!view->record)
-            return log_failure(&view->log, WHIT_ERROR_OUTPUT, "%s: cannot be written",
-                               params->record);
+            return log_failure(&view->log, WHIT_ERROR_OUTPUT, "%s: cannot write: %s",
+                               params->record, strerror(errno));
+        view->record_ms = clock_ms();
         setvbuf(view->record, NULL, _IOLBF, BUFSIZ); /* a line is written as soon as it happened */
         event_to_line(&(struct view_event){.kind = EVENT_CLOCK}, view->record);
     }

@@ -330,7 +330,7 @@ done
 printf 'still\n\000jump\n' >zero.replay
 refuse 2 "a byte 0" "zero.replay: it is no text" view "$CUBE" $SMALL --replay zero.replay
 refuse 2 "no replay" "nowhere.replay" view "$CUBE" --replay nowhere.replay
-refuse 2 "no place for a record" "nowhere/record" view "$CUBE" --record nowhere/record --frames 1
+refuse 2 "no place for a record" "nowhere/record: cannot write: No such file or directory" view "$CUBE" --record nowhere/record --frames 1
 refuse 2 "no room for a record" "/dev/full: cannot be written" view "$CUBE" $SMALL --record /dev/full --frames 1
 XDG_STATE_HOME=/proc/nowhere expect 0 "no place for cameras" view "$CUBE" $SMALL --frames 1
 check "no place for cameras: is a warning" test "$(sed 's/cameras.json.*//' "$OUT/stderr")" = "whit: warning: /proc/nowhere/whit/"
