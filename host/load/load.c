@@ -208,6 +208,8 @@ whit_result load_scene(const whit_log *log, const char *path, const whit_load_pa
 {
     char name[INPUT_NAME_BYTES];
     *out = NULL;
+    if (params && params->refused)
+        *params->refused = (whit_refused){0};
     whit_result result = load_check(log, path, params);
     bool piped = result == WHIT_OK && is_input(path);
     if (result == WHIT_OK)

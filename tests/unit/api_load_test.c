@@ -191,6 +191,17 @@ TEST_IN(limits_are_those_that_were_asked_for, folder_begin, folder_end)
     }                                                                                              \
     assert_string_equal(name_of(count), "")
 
+TEST(where_nothing_was_read_nothing_was_refused)
+{
+    static whit_refused refused;
+    const whit_load_params params = {.refused = &refused};
+    whit_scene *scene;
+    memset(&refused, 'x', sizeof refused);
+    assert_int_equal(whit_scene_load("nowhere.json", &params, NULL, &scene), WHIT_ERROR_INPUT);
+    assert_int_equal(refused.count, 0);
+    assert_string_equal(refused.folder, "");
+}
+
 TEST(every_kind_has_a_word)
 {
     CHECK_WORDS(whit_material_model_name, WHIT_MODEL_UNLIT + 1);
