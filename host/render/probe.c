@@ -10,6 +10,7 @@
 #include "device/buffer.h"
 #include "render/hooks.h"
 #include "render/pixels.h"
+#include "render/readback.h"
 #include "render/renderer.h"
 #include "render/stage_set.h"
 #include "render/stages.h"
@@ -374,6 +375,8 @@ whit_result renderer_probe(struct renderer *renderer, uint32_t x, uint32_t y, ui
     whit_result result = views_leave(renderer);
     if (result == WHIT_OK)
         result = check(renderer, x, y);
+    if (result == WHIT_OK)
+        result = readback_check_first(renderer, "the rays of a pixel");
     if (result == WHIT_OK)
         result = params_check_loops(renderer);
     if (result == WHIT_OK)

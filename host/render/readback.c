@@ -232,14 +232,19 @@ static whit_result read_data(struct renderer *renderer, enum plane_name name, st
     return read_whole(renderer, name, out);
 }
 
+whit_result readback_check_first(const struct renderer *renderer, const char *what)
+{
+    if (!renderer->params.sampling.first)
+        return WHIT_OK;
+    return log_usage(&renderer->log,
+                     "%s are those of the first sample, which samples from %u on do not have", what,
+                     renderer->params.sampling.first);
+}
+
 whit_result renderer_read_ids(struct renderer *renderer, struct image *out)
 {
-    if (renderer->params.sampling.first)
-        return log_usage(&renderer->log,
-                         "hit identities are those of the first sample, which samples "
-                         "from %u on do not have",
-                         renderer->params.sampling.first);
-    return read_data(renderer, PLANE_IDS, out);
+    whit_result result = readback_check_first(renderer, "hit identities");
+    return result == WHIT_OK ? read_data(renderer, PLANE_IDS, out) : result;
 }
 
 /* Copies aov `index` out of a row that has all of them. */

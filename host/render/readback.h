@@ -4,6 +4,8 @@
 
 #include "render/renderer.h"
 
+/* WHIT_ERROR_USAGE, logged, where the picture has no first sample, of which `what` would be. */
+WHIT_CHECK whit_result readback_check_first(const struct renderer *renderer, const char *what);
 /* Whether the picture stays on the device until it is asked for: it has one band and one pass. */
 bool readback_is_late(const struct renderer *renderer);
 /* Makes the images for a picture whose bands are read as they are drawn. */

@@ -118,9 +118,10 @@ typedef struct whit_probe_report {
 /* Traces pixel (x, y), counted from the upper left, once more and alone; the rendered picture
    stays, but views of whit_renderer_render_views are gone. The first call compiles a kernel.
    `max_rays`: how many rays are recorded; 0: 16383, which is the limit. Rays that functions of a
-   shader trace themselves are not recorded. WHIT_ERROR_USAGE for a pixel outside of the picture, or
-   without a device; WHIT_ERROR_DEVICE; WHIT_ERROR_STATUS, WHIT_ERROR_TIME_LIMIT and
-   WHIT_ERROR_CANCELLED as whit_renderer_render. */
+   shader trace themselves are not recorded. WHIT_ERROR_USAGE for a pixel outside of the picture,
+   where sampling.first leaves the first sample out (as whit_refine_step leaves it), or without a
+   device; WHIT_ERROR_DEVICE; WHIT_ERROR_STATUS, WHIT_ERROR_TIME_LIMIT and WHIT_ERROR_CANCELLED as
+   whit_renderer_render. */
 WHIT_CHECK whit_result whit_probe(whit_renderer *renderer, uint32_t x, uint32_t y,
                                   uint32_t max_rays, whit_probe_report **out);
 void whit_probe_report_destroy(whit_probe_report *report);

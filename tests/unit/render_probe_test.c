@@ -397,6 +397,11 @@ TEST(pixels_outside_are_refused)
     assert_int_equal(renderer_probe(f.renderer, 0, SIDE, 0, &report), WHIT_ERROR_USAGE);
     assert_null(report.rays);
     own_report last = probe(&f, SIDE - 1, SIDE - 1, 0);
+    whit_renderer_params later = small;
+    later.sampling = (whit_sampling){.count = 4, .first = 4};
+    assert_int_equal(renderer_set_view(f.renderer, &later), WHIT_OK);
+    assert_int_equal(renderer_probe(f.renderer, 0, 0, 0, &report), WHIT_ERROR_USAGE);
+    assert_null(report.rays);
 }
 
 static struct pipeline_info kernel_of(const struct pass *pass)
