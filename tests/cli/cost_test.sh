@@ -49,6 +49,7 @@ check "the page holds the JSON and pictures of its own" jq -e --slurpfile json "
     ($json[0] == del(.page)) and ($page.reference | startswith("data:image/png;base64,iVBOR")) and
     all($page.pictures[0][]; startswith("data:image/png;base64,iVBOR")) and ($page.method | length) > 1 and
     ($page.crop | .x + .width <= 48 and .y + .height <= 36)' "$P"
+check "the terminal says which settings these are" test "$(grep -c "^Best picture within .*: --.*: kept" "$OUT/stdout")" -eq 3
 # By these clocks only samples take time.
 check "it shows what 4 and 16 times the time bring" jq -e '. as $all |
     [.answers[] | select(.of_usual)] | map(.of_usual) == [0.25, 4, 16] and

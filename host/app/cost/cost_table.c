@@ -252,7 +252,7 @@ static void say_answer(const struct cost_report *report, const struct cost_answe
 void cost_say_answers(const struct cost_report *report, cost_say *say, void *user)
 {
     for (uint32_t i = 0; i < report->answer_count; ++i)
-        if (!(report->answers[i].goal.of_usual > 0.0))
+        if (!(report->answers[i].goal.of_usual > 0.0) || report->answers[i].kept)
             say_answer(report, &report->answers[i], say, user);
     say_list(report, COST_USE_FREE, "Cheaper than the usual settings, and as right", say, user);
     say_list(report, COST_USE_NONE, "Buy nothing here (neither cheaper nor more right)", say, user);
