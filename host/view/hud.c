@@ -345,9 +345,10 @@ static void draw_help(struct view *view)
     static const char *const mouse[][2] = {
         {"left", "drag: around; click: what is there"},
         {"right", "drag: look"},
-        {"middle", "drag: aside"},
+        {"middle", "drag, or Shift and left: aside"},
         {"wheel", "nearer"},
         {"W A S D Q E", "fly; with Shift faster"},
+        {"Shift", "with Y Z V N J K O T M: one back"},
         {"drop", "open a file; a .view: its settings; .hdr, .exr: a sky"},
     };
     const int widths[2] = {SHEET_KEYS,
