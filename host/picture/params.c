@@ -22,16 +22,24 @@ static bool is_power_of_4(uint32_t n)
 }
 
 /* Checks enumerations, which in C may have any value. */
-static bool is_known(const whit_renderer_params *params)
+static whit_result check_values(const whit_log *log, const whit_renderer_params *params)
 {
-    return (uint32_t)params->traversal <= WHIT_TRAVERSAL_BASIC &&
-           (uint32_t)params->numerics <= WHIT_NUMERICS_EXACT &&
-           (uint32_t)params->shadows <= WHIT_SHADOWS_NONE &&
-           (uint32_t)params->minification <= WHIT_MINIFICATION_NONE &&
-           (uint32_t)params->load_path <= WHIT_LOAD_TEXEL &&
-           (uint32_t)params->packets <= WHIT_PACKETS_OFF &&
-           (uint32_t)params->classes <= WHIT_CLASSES_MANY &&
-           (uint32_t)params->sampling.kind <= WHIT_SAMPLING_ADAPTIVE;
+    const struct {
+        const char *name;
+        uint32_t value, last;
+    } all[] = {{"traversal", params->traversal, WHIT_TRAVERSAL_BASIC},
+               {"numerics", params->numerics, WHIT_NUMERICS_EXACT},
+               {"shadows", params->shadows, WHIT_SHADOWS_NONE},
+               {"minification", params->minification, WHIT_MINIFICATION_NONE},
+               {"load_path", params->load_path, WHIT_LOAD_TEXEL},
+               {"packets", params->packets, WHIT_PACKETS_OFF},
+               {"classes", params->classes, WHIT_CLASSES_MANY},
+               {"sampling.kind", params->sampling.kind, WHIT_SAMPLING_ADAPTIVE}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
+        if (all[i].value > all[i].last)
+            return log_usage(log, "%s %d: the enumeration has 0 to %u", all[i].name,
+                             (int)all[i].value, all[i].last);
+    return WHIT_OK;
 }
 
 uint32_t params_rows(const whit_renderer_params *params)
@@ -81,9 +89,9 @@ whit_result params_check(const whit_log *log, whit_renderer_params *params)
                          "an exposure of %g and a time limit of %g s: the former must be finite, "
                          "the latter not below 0",
                          params->exposure_ev, params->time_limit_s);
-    if (!is_known(params))
-        return log_usage(
-            log, "parameters of a picture: a value of an enumeration that there is none of");
+    whit_result result = check_values(log, params);
+    if (result != WHIT_OK)
+        return result;
     uint32_t n = params->sampling.count, first = params->sampling.first;
     if (n > WHIT_SAMPLES_MAX)
         return log_usage(log, "%u samples a pixel: must be 1..%d", n, WHIT_SAMPLES_MAX);

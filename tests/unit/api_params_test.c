@@ -64,6 +64,10 @@ TEST_IN(values_out_of_range_are_refused, begin, device_end)
     params = small();
     params.step_aov = 7;
     refuse(device, &params, "steps of the aov number 7: the shader has 0");
+    params.packets = (whit_packets)9;
+    refuse(device, &params, "packets 9: the enumeration has 0 to 2");
+    params.packets = (whit_packets)-1;
+    refuse(NULL, &params, "packets -1: the enumeration has 0 to 2");
     double *const values[] = {params.camera.eye, params.camera.target, params.camera.up};
     const double bad[] = {NAN, -INFINITY, 1e39, 1e300};
     for (int i = 0; i < 12; ++i) {
