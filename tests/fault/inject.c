@@ -92,17 +92,16 @@ static int add_range(struct dl_phdr_info *info, size_t bytes, void *user)
 
 /* A lock of its own for the blocks that the program holds, so that they may be noted in malloc. It
    is held at each fork: a child has no thread that would give it back. */
-static atomic_flag blocks_lock = ATOMIC_FLAG_INIT;
+static pthread_spinlock_t blocks_lock;
 
 static void lock_blocks(void)
 {
-    while (atomic_flag_test_and_set(&blocks_lock))
-        ;
+    pthread_spin_lock(&blocks_lock);
 }
 
 static void unlock_blocks(void)
 {
-    atomic_flag_clear(&blocks_lock);
+    pthread_spin_unlock(&blocks_lock);
 }
 
 /* A child of the program gives shared memory up before it works: faults go on in a copy, of which
@@ -124,6 +123,7 @@ __attribute__((constructor)) static void begin(void)
     if (memory == MAP_FAILED)
         abort();
     shared = memory;
+    pthread_spin_init(&blocks_lock, PTHREAD_PROCESS_PRIVATE);
     pthread_atfork(lock_blocks, unlock_blocks, unlock_blocks);
     pthread_atfork(NULL, NULL, keep_copy);
     program = getpid();
@@ -225,7 +225,7 @@ int timer_settime(timer_t timer, int flags, const struct itimerspec *value,
 
 /* ---- Blocks that the program holds ---- */
 
-static int64_t block_count;
+static _Atomic int64_t block_count;
 #ifndef FAULT_NO_ALLOC
 
 /* Open addressing; 0: free, 1: was taken. */
