@@ -171,6 +171,8 @@ whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float
         return API_FAIL(&refine->log, WHIT_ERROR_USAGE, "%u samples to begin with: at most %d",
                         samples, WHIT_SAMPLES_MAX);
     size_t pixels = (size_t)params->width * params->height;
+    if (pixels == 0)
+        return API_FAIL(&refine->log, WHIT_ERROR_USAGE, "the picture has no size to begin with");
     whit_result result =
         image_init_logged(&refine->log, &part.color, params->width, params->height, 4, false);
     if (result == WHIT_OK)

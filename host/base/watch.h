@@ -15,7 +15,8 @@ void watch_destroy(struct watch *watch); /* NULL is fine */
 /* Adds a file. Since editors replace files, its folder is watched for its name. Standard input,
    which never changes, is not watched. A change between `since_ns` and this call counts, too. */
 void watch_add(struct watch *watch, const char *path, int64_t since_ns);
-/* The clock by which the system notes when files change; take it before a file is read. */
+/* The time, to be taken before a file is read. Systems may date files by a clock that is some 10 ms
+   behind: a change in the first 10 ms after that is not told. */
 int64_t watch_now_ns(void);
 void watch_clear(struct watch *watch); /* stops watching all files */
 /* Whether a watched file was written and closed, or replaced by another file, since the last call.

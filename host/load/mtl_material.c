@@ -367,7 +367,8 @@ void mtl_name_pictures(struct scene *scene, const struct mtl_entry *entry,
                        const whit_load_params *params)
 {
     for (int i = MTL_MAP_KD; i < MTL_MAP_COUNT; ++i) {
-        const char *file = i == MTL_MAP_NS ? NULL : entry->maps[i].file; /* most are not read */
+        /* map_Ns is read for some kinds of materials alone. */
+        const char *file = i == MTL_MAP_NS ? NULL : entry->maps[i].file;
         char *path = file ? picture_find_named(&scene->roots, entry->file, file) : NULL;
         if (path)
             load_texture_soon(scene, path, NULL, 0, params);

@@ -100,8 +100,8 @@ static whit_result decode_source(struct scene *scene, const char *name,
                                  char reason[FOREIGN_REASON_BYTES])
 {
     uint64_t pixels_max = scene_room(scene) / scene_texture_cost(1, 1);
-    whit_result result;
-    if (!texture_take_picture(scene, source, pixels_max, picture, reason, &result))
+    whit_result result = WHIT_OK;
+    if (!texture_take_picture(scene, source, pixels_max, picture))
         result = picture_read(&scene->log, foreign, pixels_max, source->data, source->size_bytes,
                               picture, reason);
     uint64_t pixels = (uint64_t)picture->width * picture->height;

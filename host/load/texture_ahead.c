@@ -12,9 +12,7 @@
 
 struct entry {
     struct texture_source source;
-    struct picture picture;
-    whit_result result; /* WHIT_ERROR_MEMORY: there is no picture, it is left to picture_read */
-    char reason[FOREIGN_REASON_BYTES];
+    struct picture picture; /* without rgba: it is left to picture_read */
 };
 
 struct texture_ahead {
@@ -60,6 +58,7 @@ static bool read_new(const struct scene *scene, const char *name, const whit_loa
                      struct entry *entry)
 {
     struct texture_source *source = &entry->source;
+    char reason[FOREIGN_REASON_BYTES];
     uint32_t index;
     if (scene_find_texture(scene, name, &index))
         return false;
@@ -69,7 +68,7 @@ static bool read_new(const struct scene *scene, const char *name, const whit_loa
             roots_reach(&scene->roots, name) != REACH_FILE)
             return false;
     }
-    return texture_read(scene, name, params, source, entry->reason) == WHIT_OK &&
+    return texture_read(scene, name, params, source, reason) == WHIT_OK &&
            !find(scene, &source->keys[source->key_count - 1]);
 }
 
@@ -83,7 +82,6 @@ void load_texture_soon(struct scene *scene, const char *path, const uint8_t *dat
     char *name = data ? string_copy(path) : picture_find(&scene->roots, path);
     struct entry *entry = name ? array_alloc_zeroed(1, sizeof *entry) : NULL;
     if (entry) {
-        entry->result = WHIT_ERROR_MEMORY;
         entry->source = (struct texture_source){.data = data, .size_bytes = size_bytes};
         if (read_new(scene, name, params, entry))
             add(scene, entry);
@@ -117,14 +115,12 @@ static void decode_entry(void *context, uint32_t index)
     struct decoding *decoding = context;
     struct entry *entry = decoding->entries[index];
     struct picture *picture = &entry->picture;
+    char reason[FOREIGN_REASON_BYTES];
     uint64_t share = reserve(decoding);
-    entry->result = picture_read(decoding->log, &decoding->foreign, share, entry->source.data,
-                                 entry->source.size_bytes, picture, entry->reason);
-    uint64_t pixels = (uint64_t)picture->width * picture->height;
-    atomic_fetch_add(&decoding->pixels_left, entry->result == WHIT_OK ? share - pixels : share);
-    /* Whether a picture exceeds its share depends on the others. */
-    if (entry->result != WHIT_OK && (entry->result != WHIT_ERROR_INPUT || pixels > share))
-        entry->result = WHIT_ERROR_MEMORY;
+    whit_result result = picture_read(decoding->log, &decoding->foreign, share, entry->source.data,
+                                      entry->source.size_bytes, picture, reason);
+    uint64_t pixels = result == WHIT_OK ? (uint64_t)picture->width * picture->height : 0;
+    atomic_fetch_add(&decoding->pixels_left, share - pixels);
 }
 
 static int by_size(const void *a, const void *b)
@@ -138,7 +134,8 @@ void load_textures_ahead(struct scene *scene, const whit_load_params *params)
 {
     uint32_t count = scene->ahead ? scene->ahead->count : 0;
     struct decoding decoding = {.log = &scene->log, .foreign = load_foreign(params)};
-    decoding.threads = count > 1 ? threads_available() : 1;
+    uint32_t cores = threads_available();
+    decoding.threads = cores < count ? cores : count;
     if (decoding.threads > 1)
         decoding.entries = array_copy(scene->ahead->entries, count, sizeof *decoding.entries);
     if (!decoding.entries)
@@ -174,17 +171,13 @@ void texture_take_source(struct scene *scene, struct texture_source *source)
 }
 
 bool texture_take_picture(struct scene *scene, const struct texture_source *source,
-                          uint64_t pixels_max, struct picture *out,
-                          char reason[FOREIGN_REASON_BYTES], whit_result *result)
+                          uint64_t pixels_max, struct picture *out)
 {
     struct entry *entry = find(scene, &source->keys[source->key_count - 1]);
-    if (!entry || entry->result == WHIT_ERROR_MEMORY ||
+    if (!entry || !entry->picture.rgba ||
         (uint64_t)entry->picture.width * entry->picture.height > pixels_max)
         return false;
-    *result = entry->result;
     *out = entry->picture;
-    memcpy(reason, entry->reason, sizeof entry->reason);
     entry->picture = (struct picture){0};
-    entry->result = WHIT_ERROR_MEMORY;
     return true;
 }

@@ -19,9 +19,8 @@ void load_textures_end(struct scene *scene);
 /* Replaces a source that has the key of its file alone by one that load_texture_soon has read. */
 void texture_take_source(struct scene *scene, struct texture_source *source);
 /* Gives what picture_read would, once for each picture, which then is the caller's. False: it was
-   not decoded ahead, or has more than `pixels_max` pixels. */
+   not decoded ahead, is damaged, or has more than `pixels_max` pixels. */
 bool texture_take_picture(struct scene *scene, const struct texture_source *source,
-                          uint64_t pixels_max, struct picture *out,
-                          char reason[FOREIGN_REASON_BYTES], whit_result *result);
+                          uint64_t pixels_max, struct picture *out);
 
 #endif

@@ -191,7 +191,9 @@ bool scenes_stop(struct view *view)
 
 bool scenes_refuse(struct view *view)
 {
-    const struct settings *settings = &view->settings, *back = &view->fallback;
+    struct settings *settings = &view->settings;
+    const struct settings *back = &view->fallback;
+    char allowed[SETTING_FOLDERS_MAX][SETTING_PATH_BYTES];
     if (settings_same_scene(settings, back))
         return false;
     if (strcmp(view->refused, view->status.error) != 0) {
@@ -204,7 +206,12 @@ bool scenes_refuse(struct view *view)
         set_asked(view, settings->scene);
         engine_watch_unread(view->engine, view->watch_asked);
     }
+    /* Folders that the user has allowed stay so: a scene may need several, and is asked for again.
+     */
+    _Static_assert(sizeof allowed == sizeof settings->allowed, "all folders are kept");
+    memcpy(allowed, settings->allowed, sizeof allowed);
     go_back(view);
+    memcpy(settings->allowed, allowed, sizeof allowed);
     return true;
 }
 

@@ -25,7 +25,8 @@
    that of messages among them, and the next call may wait forever. One for messages calls nothing
    that logs, as it would wait for itself.
 
-   The program may have set any locale: numbers in files, and in texts of the library, have a point.
+   The program may have set any locale: numbers in files, and in texts about pictures and pixels,
+   have a point; those in some messages have the program's sign.
    Threads that call the library round to nearest (fenv.h), as programs begin. Foreign files are
    read in child processes, which the library waits for; the program may ignore SIGCHLD, and wait
    for all children.

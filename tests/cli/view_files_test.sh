@@ -95,6 +95,20 @@ END
     kill $wanders || echo "SKIPPED part: no python3 or libX11 moved the pointer"
     wait $wanders 2>/dev/null
     check "the material is read" test "$(value allowed frame.pixels)" != "$pixels"
+    # A scene may name files in two other folders: the first one stays allowed when the second is asked for.
+    mkdir sheets two
+    sheets=$(realpath sheets)
+    cp model/a.obj maps/a.obj
+    cp model/a.obj sheets/b.obj
+    printf '{"objects": [{"model": "../maps/a.obj"}, {"model": "../sheets/b.obj"}]}' >two/two.json
+    EXPECTED="two.json:1:[0-9]*: objects"
+    play "files in two folders" "$CUBE" --size 400x160 <<END
+asked! drop two/two.json, until question | question = $maps
+refused: choose allow | scene = $CUBE | question =
+more! drop two/two.json, until question | question = $sheets
+both: choose allow | question = | scene = two/two.json | render has --allow-path $maps --allow-path $sheets
+END
+    EXPECTED=
 fi
 
 if part 1 2; then

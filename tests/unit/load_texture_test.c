@@ -35,10 +35,9 @@ WRAPPED(uint32_t, threads_available, void)
 }
 
 WRAPPED(bool, texture_take_picture, struct scene *scene, const struct texture_source *source,
-        uint64_t pixels_max, struct picture *out, char reason[FOREIGN_REASON_BYTES],
-        whit_result *result)
+        uint64_t pixels_max, struct picture *out)
 {
-    bool took = __real_texture_take_picture(scene, source, pixels_max, out, reason, result);
+    bool took = __real_texture_take_picture(scene, source, pixels_max, out);
     taken += took;
     return took;
 }
@@ -217,7 +216,8 @@ static void put_pictures(uint32_t count)
     }
 }
 
-/* Pictures that a material reads are decoded ahead, damaged ones too, but for data: URIs. */
+/* Pictures that a material reads are decoded ahead, but for data: URIs. Damaged ones are tried
+   again, since what ends a child may be the load of the machine. */
 TEST_IN(pictures_are_decoded_ahead, begin, fixture_end)
 {
     static const char *const images[] = {"{'uri':'0.tga'}", "{'uri':'1.tga'}", "{'bufferView':0}",
@@ -227,8 +227,8 @@ TEST_IN(pictures_are_decoded_ahead, begin, fixture_end)
     put_data("damaged.tga", tga, 12);
     assert_int_equal(fixture_load(write_gltf(images, 5)), WHIT_OK);
     assert_int_equal(fixture.scene->texture_count, 5);
-    assert_int_equal(decoded, 5);
-    assert_int_equal(taken, 4);
+    assert_int_equal(decoded, 6);
+    assert_int_equal(taken, 3);
     assert_int_equal(file_reads, 4);
     assert_true(fixture_noted("texture `damaged.tga`: "));
     assert_null(fixture.scene->ahead);

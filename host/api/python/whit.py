@@ -213,13 +213,15 @@ class _Hearing:
 
     def __init__(self):
         self.errors = []  # (thread, text)
+        self.lock = threading.Lock()
         self._fn = _LogFn(self._hear)
         self.log = Log(fn=self._fn, level=LogLevel.WARNING)
 
     def _hear(self, _user, level, text):
         text = text.decode("utf-8", "replace")
         if level == LogLevel.ERROR:
-            self.errors.append((threading.get_ident(), text))
+            with self.lock:
+                self.errors.append((threading.get_ident(), text))
         else:
             logging.getLogger("whit").warning("%s", text)
 
@@ -228,11 +230,12 @@ def _take_errors(hearings):
     """The errors of this thread's calls, and of threads that only the library knows; those of others stay."""
     lines = []
     for hearing in hearings:
-        others = {one.ident for one in threading.enumerate()} - {threading.get_ident()} if hearing.errors else ()
-        for error in list(hearing.errors):
-            if error[0] not in others:
-                hearing.errors.remove(error)
-                lines.append(error[1])
+        # A thread of the library that has logged something counts as a thread of Python's too, as a dummy.
+        others = {one.ident for one in threading.enumerate() if not isinstance(one, threading._DummyThread)}
+        with hearing.lock:
+            kept = [error for error in hearing.errors if error[0] in others - {threading.get_ident()}]
+            lines += [error[1] for error in hearing.errors if error not in kept]
+            hearing.errors[:] = kept
     return lines
 
 
