@@ -219,6 +219,12 @@ TEST(a_picture_of_the_usual_size_begins_as_any)
     float *zeros = calloc(640 * 480, 4 * sizeof *zeros);
     assert_non_null(zeros);
     assert_int_equal(whit_refine_begin(o.refine, 4, zeros, zeros), WHIT_OK);
+    /* Another one has no size once it was moved, as only its creation looks at that. */
+    whit_refine *moved = NULL;
+    assert_int_equal(whit_refine_create(o.renderer, &params, &moved), WHIT_OK);
+    whit_refine_move(moved, o.renderer, &params);
+    assert_int_equal(whit_refine_begin(moved, 4, zeros, zeros), WHIT_ERROR_USAGE);
+    whit_refine_destroy(moved);
     free(zeros);
 }
 
