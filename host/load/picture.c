@@ -18,20 +18,24 @@
 static _Thread_local bool lacks_memory, over_limit;
 static _Thread_local uint64_t block_bytes_max;
 
-static void *take_block(void *block, size_t bytes)
+/* Bytes from `held` on are zero: of a damaged file stb_image gives away pixels that it has not
+   written. */
+static void *take_block(void *block, size_t held, size_t bytes)
 {
     if (bytes > block_bytes_max) {
         over_limit = true;
         return NULL;
     }
-    void *memory = realloc(block, bytes);
+    void *memory = block ? realloc(block, bytes) : calloc(1, bytes);
     lacks_memory |= !memory;
+    if (block && memory && bytes > held)
+        memset((char *)memory + held, 0, bytes - held);
     return memory;
 }
 
-#define STBI_MALLOC(bytes)         take_block(NULL, bytes)
-#define STBI_REALLOC(block, bytes) take_block(block, bytes)
-#define STBI_FREE(block)           free(block)
+#define STBI_MALLOC(bytes)                     take_block(NULL, 0, bytes)
+#define STBI_REALLOC_SIZED(block, held, bytes) take_block(block, held, bytes)
+#define STBI_FREE(block)                       free(block)
 #define STBI_NO_STDIO
 #define STBI_NO_JPEG /* a damaged file makes stb_image write out of bounds */
 #define STBI_NO_PIC

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <jpeglib.h>
+#include <malloc.h>
 #include <sys/socket.h>
 
 #include "../random.h"
@@ -249,6 +250,31 @@ WRAPPED(void *, realloc, void *block, size_t size_bytes)
 {
     largest_block = size_bytes > largest_block ? size_bytes : largest_block;
     return __real_realloc(block, size_bytes);
+}
+
+WRAPPED(void *, calloc, size_t count, size_t size_bytes)
+{
+    largest_block = count * size_bytes > largest_block ? count * size_bytes : largest_block;
+    return __real_calloc(count, size_bytes);
+}
+
+/* stb_image gives a picture whose last row the file lacks. malloc fills its blocks meanwhile, so
+   that pixels that were never written show. */
+TEST(pixels_that_a_file_lacks_are_zero)
+{
+    enum { SIDE = 8, HELD = SIDE * (SIDE - 1) * 3 };
+    uint8_t file[18 + HELD] = {[2] = 2, [12] = SIDE, [14] = SIDE, [16] = 24, [17] = 0x20};
+    struct picture picture;
+    const char *reason = "";
+    memset(file + 18, 77, HELD);
+    mallopt(M_PERTURB, 0xa5);
+    whit_result result = picture_decode(file, sizeof file, UINT64_MAX, &picture, &reason);
+    mallopt(M_PERTURB, 0);
+    assert_int_equal(result, WHIT_OK);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        assert_memory_equal(picture.rgba + i * 4,
+                            i < SIDE * (SIDE - 1) ? "\115\115\115\377" : "\0\0\0\377", 4);
+    picture_finish(&picture);
 }
 
 /* A PNG with 2x2 pixels by its header, and data for 4 million. stb_image ignores checksums. */
