@@ -286,10 +286,10 @@ static void save_picture(struct view *view)
                                    .shader = frame->shader ? frame->shader->shader : NULL,
                                    .device = &frame->device,
                                    .stats = frame->refined ? &frame->all : &frame->stats};
-    if (view_free_name("png", path) && view->params->save(&shot, path) == WHIT_OK)
-        view_say(view, "saved as %s", path);
-    else
-        view_say(view, "%s could not be saved", path);
+    struct view_saving saving;
+    const whit_log log = view_saving_begin(view, &saving);
+    view_say_saved(view, &saving, path,
+                   view_free_name("png", path) && view->params->save(&shot, path, &log) == WHIT_OK);
 }
 
 static void copy_line(struct view *view)

@@ -39,29 +39,29 @@ static void list_states(struct panels *panels)
     globfree(&found);
 }
 
-static whit_result write_state(const struct view *view, const char *path)
+static whit_result write_state(const struct view *view, const char *path, const whit_log *log)
 {
     char words[WORDS_BYTES];
     struct file_write file;
     size_t length = settings_write(&view->settings, SETTINGS_STATE, "\n", words, sizeof words);
     if (length >= sizeof words)
         return WHIT_ERROR_MEMORY;
-    whit_result result = file_write_begin(&view->log, path, &file);
+    whit_result result = file_write_begin(log, path, &file);
     if (result != WHIT_OK)
         return result;
     fputs("# whit view ", file.stream);
     quote_print(view->settings.scene, file.stream);
     fprintf(file.stream, " --state %s\n%s\n", path, words); /* path is from view_free_name */
-    return file_write_commit(&view->log, &file);
+    return file_write_commit(log, &file);
 }
 
 void panels_save(struct view *view)
 {
     char path[VIEW_FREE_NAME];
-    if (view_free_name("view", path) && write_state(view, path) == WHIT_OK)
-        view_say(view, "saved as %s", path);
-    else
-        view_say(view, "%s could not be saved", path);
+    struct view_saving saving;
+    const whit_log log = view_saving_begin(view, &saving);
+    view_say_saved(view, &saving, path,
+                   view_free_name("view", path) && write_state(view, path, &log) == WHIT_OK);
     view->panels.states_known = false;
 }
 

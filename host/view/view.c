@@ -39,6 +39,32 @@ void view_say(struct view *view, const char *format, ...)
     view->dirty = true;
 }
 
+static void saving_message(void *user, whit_log_level level, const char *message)
+{
+    struct view_saving *saving = user;
+    if (level == WHIT_LOG_ERROR)
+        snprintf(saving->error, sizeof saving->error, "%s", message);
+    if (saving->next.fn)
+        saving->next.fn(saving->next.user, level, message);
+}
+
+whit_log view_saving_begin(const struct view *view, struct view_saving *saving)
+{
+    *saving = (struct view_saving){.next = view->log};
+    return (whit_log){saving_message, saving, view->log.level};
+}
+
+void view_say_saved(struct view *view, const struct view_saving *saving, const char *path,
+                    bool saved)
+{
+    if (saved)
+        view_say(view, "saved as %s", path);
+    else if (saving->error[0])
+        view_say(view, "%s", saving->error);
+    else
+        view_say(view, "%s could not be saved", path);
+}
+
 const char *view_error(const struct view *view)
 {
     if (view->shaders.errors[0])

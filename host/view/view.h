@@ -32,7 +32,7 @@ struct view_params {
     bool remember;      /* remember cameras from one run to the next */
     const volatile bool *cancel;
     /* Saves a picture; logs the reason of an error. */
-    whit_result (*save)(const struct view_shot *shot, const char *path);
+    whit_result (*save)(const struct view_shot *shot, const char *path, const whit_log *log);
     /* Reads a file of settings; scene and files of *settings stay. `message` gets the reason of an
        error, with file and line. */
     whit_result (*load_state)(void *user, const char *path, struct settings *settings,

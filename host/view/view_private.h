@@ -124,6 +124,16 @@ struct view {
 double view_now_ms(const struct view *view);
 /* Shows a message for some seconds. */
 void view_say(struct view *view, const char *format, ...) WHIT_PRINTF(2, 3);
+
+/* A file that is being saved. The log that view_saving_begin gives goes on to the viewer's, and
+   keeps the last error for the message of view_say_saved in the window. */
+struct view_saving {
+    whit_log next;
+    char error[TOAST_BYTES];
+};
+whit_log view_saving_begin(const struct view *view, struct view_saving *saving);
+void view_say_saved(struct view *view, const struct view_saving *saving, const char *path,
+                    bool saved);
 /* Call it when the camera was moved by hand: updates its text, and asks for quick pictures for a
    while. */
 void view_moved(struct view *view);

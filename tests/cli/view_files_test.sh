@@ -73,6 +73,19 @@ check "no camera of it is remembered" test $? -ne 0
 INPUT=/dev/null
 rm ./-
 
+if part 0 2; then
+    # The window says why a picture, or a state, cannot be saved: nobody can write into this folder.
+    cd /proc || exit 1
+    EXPECTED="^whit: error: whit-0001.\(png\|view\): cannot write: "
+    play "a folder that takes no files" "$CUBE" $SMALL <<END
+whole: | error =
+picture: press F12 | toast has whit-0001.png: cannot write: No such file
+state: press Ctrl+S | toast has whit-0001.view: cannot write: No such file
+END
+    EXPECTED=
+    cd "$OUT/work" || exit 1
+fi
+
 if part 1 2; then
     # If a scene names a file outside of its folder, the viewer asks once, and reads the file if the answer is yes.
     mkdir model maps

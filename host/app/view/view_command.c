@@ -103,13 +103,13 @@ static whit_result load_state(void *user, const char *path, struct settings *set
 }
 
 /* view_params.save: the file that `whit render` would have written. */
-static whit_result save_shot(const struct view_shot *shot, const char *path)
+static whit_result save_shot(const struct view_shot *shot, const char *path, const whit_log *log)
 {
     struct recipe recipe;
     if (!recipe_init(&recipe, shot->settings, shot->scene, shot->shader, shot->device, shot->stats,
                      path, NULL))
         return WHIT_ERROR_MEMORY;
-    whit_result result = whit_image_save(shot->color, path, recipe.texts, recipe.count, &cli_log);
+    whit_result result = whit_image_save(shot->color, path, recipe.texts, recipe.count, log);
     recipe_finish(&recipe);
     return result;
 }
