@@ -5,14 +5,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A number as the sum of two doubles, the second being a rounding error of the first (Dekker 1971,
-   "A floating-point technique for extending the available precision"). */
-struct pair {
+/* Double-double: a number as the sum of two doubles, the second being a rounding error of the first
+   (Dekker 1971, "A floating-point technique for extending the available precision"). */
+struct dd {
     double hi, lo;
 };
 
 /* atan(i / 16) */
-static const struct pair atan_of[] = {
+static const struct dd atan_of[] = {
     {0x0.0p+0, 0x0.0p+0},
     {0x1.ff55bb72cfdeap-5, -0x1.c934d86d23f1dp-60},
     {0x1.fd5ba9aac2f6ep-4, -0x1.cd37686760c17p-59},
@@ -34,7 +34,7 @@ static const struct pair atan_of[] = {
 
 /* log((FIRST_LOG + i) / 32) */
 enum { FIRST_LOG = 22, LAST_LOG = 46 };
-static const struct pair log_of[] = {
+static const struct dd log_of[] = {
     {-0x1.7fafa3bd8151cp-2, 0x1.219024acd3b77p-58},
     {-0x1.522ae0738a3d8p-2, 0x1.8f7e9b38a6979p-57},
     {-0x1.269621134db92p-2, -0x1.e0efadd9db02bp-56},
@@ -63,7 +63,7 @@ static const struct pair log_of[] = {
 };
 
 /* 2^(i / 32) */
-static const struct pair exp2_of[] = {
+static const struct dd exp2_of[] = {
     {0x1.0000000000000p+0, 0x0.0p+0},
     {0x1.059b0d3158574p+0, 0x1.d73e2a475b465p-55},
     {0x1.0b5586cf9890fp+0, 0x1.8a62e4adc610bp-54},
@@ -98,55 +98,55 @@ static const struct pair exp2_of[] = {
     {0x1.f50765b6e4540p+0, 0x1.9d3e12dd8a18bp-54},
 };
 
-static const struct pair half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
-static const struct pair pi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
-static const struct pair log2_e = {0x1.71547652b82fep+0, 0x1.777d0ffda0d24p-56};
-static const struct pair log10_e = {0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
+static const struct dd half_pi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
+static const struct dd pi = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
+static const struct dd log2_e = {0x1.71547652b82fep+0, 0x1.777d0ffda0d24p-56};
+static const struct dd log10_e = {0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
 /* log(2); .hi ends in 17 zero bits, so that its product with an integer of 17 bits is exact. */
-static const struct pair ln2 = {0x1.62e42fefa0000p-1, 0x1.cf79abc9e3b3ap-40};
+static const struct dd ln2 = {0x1.62e42fefa0000p-1, 0x1.cf79abc9e3b3ap-40};
 
-static struct pair sum(double a, double b) /* exact (Knuth's two-sum) */
+static struct dd sum(double a, double b) /* exact (Knuth's two-sum) */
 {
     double s = a + b, from_b = s - a;
-    return (struct pair){s, (a - (s - from_b)) + (b - from_b)};
+    return (struct dd){s, (a - (s - from_b)) + (b - from_b)};
 }
 
-static struct pair split(double a)
+static struct dd split(double a)
 {
     double c = 134217729.0 * a, hi = c - (c - a);
-    return (struct pair){hi, a - hi};
+    return (struct dd){hi, a - hi};
 }
 
-static struct pair product(double a, double b) /* exact, but for under- and overflow */
+static struct dd product(double a, double b) /* exact, but for under- and overflow */
 {
-    struct pair as = split(a), bs = split(b);
+    struct dd as = split(a), bs = split(b);
     double p = a * b;
-    return (struct pair){p, ((as.hi * bs.hi - p) + as.hi * bs.lo + as.lo * bs.hi) + as.lo * bs.lo};
+    return (struct dd){p, ((as.hi * bs.hi - p) + as.hi * bs.lo + as.lo * bs.hi) + as.lo * bs.lo};
 }
 
-static struct pair times(struct pair a, struct pair b)
+static struct dd times(struct dd a, struct dd b)
 {
-    struct pair p = product(a.hi, b.hi);
+    struct dd p = product(a.hi, b.hi);
     return sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
 }
 
 /* a / b, of doubles without errors of their own. */
-static struct pair quotient(double a, double b)
+static struct dd quotient(double a, double b)
 {
     double q = a / b;
-    struct pair p = product(q, b);
-    return (struct pair){q, ((a - p.hi) - p.lo) / b};
+    struct dd p = product(q, b);
+    return (struct dd){q, ((a - p.hi) - p.lo) / b};
 }
 
 /* ---- Angles ---- */
 
 struct turn {
-    struct pair sine, cosine;
+    struct dd sine, cosine;
 };
 
 /* The sine and cosine of an angle up to pi / 4, by Taylor's series; the first term left out is
    below 2^-62 of the sum. */
-static struct turn turn_of(struct pair r)
+static struct turn turn_of(struct dd r)
 {
     static const struct {
         double sine, cosine;
@@ -159,14 +159,14 @@ static struct turn turn_of(struct pair r)
                  {-1.0 / 1307674368000.0, 1.0 / 20922789888000.0},
                  {1.0 / 355687428096000.0, -1.0 / 6402373705728000.0},
                  {-1.0 / 121645100408832000.0, 1.0 / 2432902008176640000.0}};
-    struct pair square = product(r.hi, r.hi);
+    struct dd square = product(r.hi, r.hi);
     double z = square.hi, s = 0.0, c = 0.0;
     for (size_t i = sizeof terms / sizeof *terms; i-- > 0;) {
         s = terms[i].sine + z * s;
         c = terms[i].cosine + z * c;
     }
-    struct pair sine = sum(r.hi, r.hi * z * s + r.lo * (1.0 - 0.5 * z));
-    struct pair cosine = sum(1.0, -0.5 * z);
+    struct dd sine = sum(r.hi, r.hi * z * s + r.lo * (1.0 - 0.5 * z));
+    struct dd cosine = sum(1.0, -0.5 * z);
     double low = cosine.lo + (z * z * c - 0.5 * square.lo - r.hi * r.lo);
     return (struct turn){sine, sum(cosine.hi, low)};
 }
@@ -179,11 +179,11 @@ static struct turn turn_by(double angle)
                                    0x1.3198a2e000000p-69, 0x1.b839a252049c1p-104};
     double left = fabs(angle) > 1e6 ? fmod(angle, 2.0 * pi.hi) : angle;
     double quarters = floor(left / half_pi.hi + 0.5);
-    struct pair r = sum(left - quarters * parts[0], -quarters * parts[1]);
-    struct pair rest = sum(r.hi, -quarters * parts[2]);
+    struct dd r = sum(left - quarters * parts[0], -quarters * parts[1]);
+    struct dd rest = sum(r.hi, -quarters * parts[2]);
     r = sum(rest.hi, rest.lo + (r.lo - quarters * parts[3]));
     struct turn t = turn_of(r);
-    struct pair sine = t.sine, cosine = t.cosine;
+    struct dd sine = t.sine, cosine = t.cosine;
     uint32_t quarter = (uint32_t)(int32_t)quarters & 3u;
     if (quarter & 1u)
         t = (struct turn){cosine, {-sine.hi, -sine.lo}};
@@ -207,13 +207,13 @@ double same_tan(double angle)
     if (!isfinite(angle) || angle == 0.0)
         return angle == 0.0 ? angle : NAN;
     struct turn t = turn_by(angle);
-    struct pair q = quotient(t.sine.hi, t.cosine.hi);
+    struct dd q = quotient(t.sine.hi, t.cosine.hi);
     return q.hi + (q.lo + (t.sine.lo - q.hi * t.cosine.lo) / t.cosine.hi);
 }
 
 /* The angle in 0..pi / 4 whose tangent is `small` / `large`, neither negative: the table's angle of
    a tangent i / 16 near it, plus the rest that the addition theorem gives, by Taylor's series. */
-static struct pair small_angle(double small, double large)
+static struct dd small_angle(double small, double large)
 {
     int exponent;
     (void)frexp(large, &exponent); /* scaled away from overflow and underflow */
@@ -221,26 +221,26 @@ static struct pair small_angle(double small, double large)
     large = ldexp(large, -exponent);
     int i = (int)floor(16.0 * (small / large) + 0.5);
     double c = i / 16.0;
-    struct pair taken = product(c, large);
-    struct pair t = quotient((small - taken.hi) - taken.lo, large + c * small);
+    struct dd taken = product(c, large);
+    struct dd t = quotient((small - taken.hi) - taken.lo, large + c * small);
     double z = t.hi * t.hi;
     double series =
         -1.0 / 3.0 + z * (1.0 / 5.0 + z * (-1.0 / 7.0 + z * (1.0 / 9.0 + z * (-1.0 / 11.0))));
-    struct pair angle = sum(atan_of[i].hi, t.hi);
+    struct dd angle = sum(atan_of[i].hi, t.hi);
     return sum(angle.hi, angle.lo + (atan_of[i].lo + (t.hi * z * series + t.lo)));
 }
 
-static struct pair difference(struct pair a, struct pair b)
+static struct dd difference(struct dd a, struct dd b)
 {
-    struct pair s = sum(a.hi, -b.hi);
+    struct dd s = sum(a.hi, -b.hi);
     return sum(s.hi, s.lo + (a.lo - b.lo));
 }
 
 /* The angle in 0..pi from the x axis to (x, y), for finite numbers, y not negative, not both 0. */
-static struct pair angle_of(double y, double x)
+static struct dd angle_of(double y, double x)
 {
     double size = fabs(x);
-    struct pair angle = y > size ? difference(half_pi, small_angle(size, y)) : small_angle(y, size);
+    struct dd angle = y > size ? difference(half_pi, small_angle(size, y)) : small_angle(y, size);
     return x < 0.0 ? difference(pi, angle) : angle;
 }
 
@@ -261,12 +261,12 @@ double same_acos(double x)
 {
     if (!(fabs(x) <= 1.0))
         return NAN;
-    struct pair square = product(x, x), s = sum(1.0, -square.hi);
+    struct dd square = product(x, x), s = sum(1.0, -square.hi);
     s = sum(s.hi, s.lo - square.lo);
     double y = sqrt(s.hi);
     if (y == 0.0)
         return x < 0.0 ? pi.hi : 0.0;
-    struct pair again = product(y, y), angle = angle_of(y, x);
+    struct dd again = product(y, y), angle = angle_of(y, x);
     double low = ((s.hi - again.hi) + (s.lo - again.lo)) / (2.0 * y);
     return angle.hi + (angle.lo + low * x);
 }
@@ -275,7 +275,7 @@ double same_acos(double x)
 
 /* The natural logarithm of a finite x > 0: x = 2^e m, and log(m) = log(c) + 2 artanh(t) with t = (m
    - c) / (m + c), where c is the multiple i / 32 nearest to m. */
-static struct pair log_pair(double x)
+static struct dd log_pair(double x)
 {
     int e;
     double m = frexp(x, &e);
@@ -285,10 +285,10 @@ static struct pair log_pair(double x)
     }
     int i = (int)floor(32.0 * m + 0.5);
     double c = i / 32.0;
-    struct pair below = sum(m, c), t = quotient(m - c, below.hi);
+    struct dd below = sum(m, c), t = quotient(m - c, below.hi);
     double low = t.lo - t.hi * below.lo / below.hi, z = t.hi * t.hi;
     double series = 1.0 / 3.0 + z * (1.0 / 5.0 + z * (1.0 / 7.0 + z * (1.0 / 9.0)));
-    struct pair whole = sum(e * ln2.hi, log_of[i - FIRST_LOG].hi), all = sum(whole.hi, 2.0 * t.hi);
+    struct dd whole = sum(e * ln2.hi, log_of[i - FIRST_LOG].hi), all = sum(whole.hi, 2.0 * t.hi);
     double rest = e * ln2.lo + log_of[i - FIRST_LOG].lo + 2.0 * (t.hi * z * series + low);
     return sum(all.hi, all.lo + (whole.lo + rest));
 }
@@ -321,7 +321,7 @@ double same_log10(double x)
 
 /* e to the power x, for x in -746..710: 2^(k / 32) from the table, times Taylor's series of the
    rest. */
-static double exp_of(struct pair x)
+static double exp_of(struct dd x)
 {
     double k = floor(x.hi * 32.0 / (ln2.hi + ln2.lo) + 0.5);
     double r = ((x.hi - k * (ln2.hi / 32.0)) - k * (ln2.lo / 32.0)) + x.lo;
@@ -332,18 +332,18 @@ static double exp_of(struct pair x)
               r * (1.0 / 6.0 +
                    r * (1.0 / 24.0 + r * (1.0 / 120.0 + r * (1.0 / 720.0 + r * (1.0 / 5040.0)))))));
     int32_t whole = (int32_t)k;
-    const struct pair *of = &exp2_of[whole & 31];
+    const struct dd *of = &exp2_of[whole & 31];
     return ldexp(of->hi + (of->hi * p + of->lo), (whole - (whole & 31)) / 32);
 }
 
-static double exp_pair(struct pair x)
+static double exp_pair(struct dd x)
 {
     return x.hi > 710.0 ? INFINITY : x.hi < -746.0 ? 0.0 : exp_of(x);
 }
 
 double same_exp(double x)
 {
-    return isnan(x) ? NAN : exp_pair((struct pair){x, 0.0});
+    return isnan(x) ? NAN : exp_pair((struct dd){x, 0.0});
 }
 
 double same_pow(double x, double y)
@@ -355,6 +355,6 @@ double same_pow(double x, double y)
     if (x == 0.0 || isinf(x))
         return (x == 0.0) == (y < 0.0) ? INFINITY : 0.0;
     double bounded = fmax(-1e20, fmin(1e20, y));
-    struct pair l = log_pair(x), p = product(l.hi, bounded);
+    struct dd l = log_pair(x), p = product(l.hi, bounded);
     return exp_pair(sum(p.hi, p.lo + l.lo * bounded));
 }

@@ -266,7 +266,7 @@ void cost_choice_apply(const struct cost_choice *choice, struct settings *settin
     if (choice->contrast > 0.0)
         settings->picture.sampling = (whit_sampling){.kind = WHIT_SAMPLING_ADAPTIVE,
                                                      .count = choice->samples,
-                                                     .count_max = choice->samples_most,
+                                                     .count_max = choice->samples_max,
                                                      .contrast = choice->contrast};
 }
 

@@ -178,8 +178,8 @@ enum { COST_SAMPLES_MAX = 256 }; /* of COST_UNDER: more than were measured are e
 struct cost_choice {
     uint8_t settings[KNOBS]; /* by index in knob_table: index of the knob's setting */
     uint32_t samples;        /* per pixel; 0: as the setting of knob `aa` says */
-    double contrast;         /* above 0: adaptive by it, up to `samples_most` */
-    uint32_t samples_most;
+    double contrast;         /* above 0: adaptive by it, up to `samples_max` */
+    uint32_t samples_max;
     double ms, error; /* predicted: wall clock at full size; by the goal's metric */
     bool found;
 };

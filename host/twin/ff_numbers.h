@@ -1,7 +1,7 @@
-/* shaders/lib/ff_numbers.glsl in C, bit for bit. A pair stands for the sum of two floats, of which
-   the second is a rounding error of the first (Dekker 1971, "A floating-point technique for
-   extending the available precision"). Products of pairs have a relative error of 2^-45, sums one
-   of 2^-46 of their terms. */
+/* shaders/lib/ff_numbers.glsl in C, bit for bit: float-float arithmetic. A number is the sum of two
+   floats, of which the second is a rounding error of the first (Dekker 1971, "A floating-point
+   technique for extending the available precision"). Products have a relative error of 2^-45, sums
+   one of 2^-46 of their terms. */
 #ifndef TWIN_FF_NUMBERS_H
 #define TWIN_FF_NUMBERS_H
 
@@ -9,7 +9,7 @@
 
 #define FF_RELATIVE (1.0f / 2199023255552.0f)             /* 2^-41 */
 #define FF_ABSOLUTE (1.0f / 1208925819614629174706176.0f) /* 2^-80 */
-#define PAIR_MIN    (1.0f / 1099511627776.0f)             /* 2^-40 */
+#define FF_MIN      (1.0f / 1099511627776.0f)             /* 2^-40 */
 
 struct ff {
     float high, low;
@@ -123,7 +123,7 @@ static inline bool round_ratio(struct bounded_ff top, struct bounded_ff bottom, 
     uint32_t bits = float_bits(both.high); /* t > 0 */
     float next = float_of_bits(both.low > 0.0f ? bits + 1 : bits - 1);
     *t = both.high;
-    return both.high > PAIR_MIN && size > PAIR_MIN &&
+    return both.high > FF_MIN && size > FF_MIN &&
            fabsf(both.low) + error < 0.5f * fabsf(next - both.high);
 }
 

@@ -1,13 +1,12 @@
-/* shaders/lib/ff_triangle.glsl in C, bit for bit: the result of exact_meet() in pairs of floats,
-   wherever their error bound leaves no doubt. A pair stands for the sum of two floats, of which the
-   second is a rounding error of the first (Dekker 1971, "A floating-point technique for extending
-   the available precision"). Bounds: docs/numerics-method.md, "exact". */
+/* shaders/lib/ff_triangle.glsl in C, bit for bit: the result of exact_meet() in float-float
+   arithmetic (ff_numbers.h), wherever its error bound leaves no doubt. Bounds:
+   docs/numerics-method.md, "exact". */
 #ifndef TWIN_FF_TRIANGLE_H
 #define TWIN_FF_TRIANGLE_H
 
 #include "twin/exact.h"
 
-/* All coordinates must be finite. False: pairs of floats cannot decide, and *out is undefined; but
+/* All coordinates must be finite. False: float-floats cannot decide, and *out is undefined; but
    with *key_known, out->key is the key if the triangle is hit. */
 bool ff_meet(struct vec3 origin, struct vec3 dir, struct vec3 v0, struct vec3 v1, struct vec3 v2,
              struct exact_candidate *out, bool *key_known);

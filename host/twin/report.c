@@ -145,10 +145,10 @@ static void measure_task(void *context, uint32_t index)
 static whit_result add_measured(const struct measuring *measuring, uint32_t task_count,
                                 whit_accel_report *report)
 {
-    uint64_t pairs = 0, triangles = 0;
+    uint64_t inner_nodes = 0, triangles = 0;
     uint32_t status = 0;
     for (uint32_t i = 0; i < task_count; ++i) {
-        pairs += measuring->costs[i].inner_nodes;
+        inner_nodes += measuring->costs[i].inner_nodes;
         triangles += measuring->costs[i].triangles;
         status |= measuring->statuses[i];
     }
@@ -157,7 +157,7 @@ static whit_result add_measured(const struct measuring *measuring, uint32_t task
                            "%s: the traversal reported status %#x", measuring->accel->scene->name,
                            status);
     report->measured_rays = measuring->ray_count;
-    report->measured_inner_nodes = (double)pairs / measuring->ray_count;
+    report->measured_inner_nodes = (double)inner_nodes / measuring->ray_count;
     report->measured_triangles = (double)triangles / measuring->ray_count;
     return WHIT_OK;
 }

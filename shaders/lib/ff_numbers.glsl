@@ -1,6 +1,6 @@
-// Pairs of floats (float-float arithmetic). A pair stands for its sum; the second float is a
-// rounding error of the first (Dekker 1971, "A floating-point technique for extending the available
-// precision"). Products of pairs have a relative error of 2^-45, sums one of 2^-46 of their terms.
+// Float-float arithmetic: a number is the sum of two floats, of which the second is a rounding
+// error of the first (Dekker 1971, "A floating-point technique for extending the available
+// precision"). Products have a relative error of 2^-45, sums one of 2^-46 of their terms.
 // twin/ff_numbers.h is this file in C.
 #ifndef LIB_FF_NUMBERS_GLSL
 #define LIB_FF_NUMBERS_GLSL
@@ -9,9 +9,9 @@
 
 const float FF_RELATIVE = 1.0 / 2199023255552.0; // 2^-41
 const float FF_ABSOLUTE = 1.0 / 1208925819614629174706176.0; // 2^-80
-const float PAIR_MIN = 1.0 / 1099511627776.0; // 2^-40
+const float FF_MIN = 1.0 / 1099511627776.0; // 2^-40
 
-#include "pairs.glsl"
+#include "ff_sums.glsl"
 
 vec2 ff_times(vec2 a, vec2 b)
 {
@@ -89,7 +89,7 @@ bool round_ratio(vec2 top, vec2 bottom, float top_error, float bottom_error, out
     precise float to_middle = 0.5 * abs(next - both.x);
     precise float off = abs(both.y) + error;
     t = both.x;
-    return t > PAIR_MIN && abs(bottom.x) > PAIR_MIN && off < to_middle;
+    return t > FF_MIN && abs(bottom.x) > FF_MIN && off < to_middle;
 }
 
 bool is_fit(float largest)

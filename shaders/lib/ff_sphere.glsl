@@ -1,4 +1,4 @@
-// The test of exact_sphere.glsl in float-float arithmetic (pairs of floats): nearly always enough,
+// The test of exact_sphere.glsl in float-float arithmetic: nearly always enough,
 // for a small part of the cost of integers. twin/ff_sphere.c is this file in C.
 #ifndef LIB_FF_SPHERE_GLSL
 #define LIB_FF_SPHERE_GLSL

@@ -1,4 +1,4 @@
-// The test of exact.glsl in float-float arithmetic (pairs of floats): nearly always enough, for a
+// The test of exact.glsl in float-float arithmetic: nearly always enough, for a
 // small part of the cost of integers. twin/ff_triangle.c is this file in C.
 #ifndef LIB_FF_TRIANGLE_GLSL
 #define LIB_FF_TRIANGLE_GLSL

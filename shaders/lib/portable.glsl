@@ -11,7 +11,7 @@
 #define LIB_PORTABLE_GLSL
 
 #include "angles.glsl"
-#include "pairs.glsl"
+#include "ff_sums.glsl"
 
 // Whether the device's own division and square root are rounded correctly: they then give the same
 // bits as `divided` and `rooted`, and take less time. The other functions have only one form.
@@ -164,10 +164,10 @@ float portable_exp(const float x)
     return is_nan_bits(floatBitsToUint(x)) ? portable_nan() : y;
 }
 
-// log2(x) of a finite x > 0 as a pair, with a relative error of 2^-30. x = 2^e m / c with m c in
+// log2(x) of a finite x > 0 as a float-float, with a relative error of 2^-30. x = 2^e m / c with m c in
 // 0.866..1.156, where c has few bits, so that t = m c - 1 is exact; log(1 + t) = t - t^2 / 2 + t^3
 // p(t), with the first two terms exact.
-vec2 log2_pair(const float x)
+vec2 log2_ff(const float x)
 {
     Significand of = significand(floatBitsToUint(x));
     float m = significand_float(of.s);
@@ -205,12 +205,12 @@ float logarithm(const float x, const float usual)
 // 0.53 ulp, as portable_log has. -infinity for 0 and -0, NaN for x < 0.
 float portable_log2(const float x)
 {
-    return logarithm(x, log2_pair(x).x);
+    return logarithm(x, log2_ff(x).x);
 }
 
 float portable_log(const float x)
 {
-    vec2 l = log2_pair(x);
+    vec2 l = log2_ff(x);
     vec2 p = ff_product(l.x, LN_2.x);
     return logarithm(x, p.x + (p.y + (l.x * LN_2.y + l.y * LN_2.x)));
 }
@@ -220,7 +220,7 @@ float portable_pow(const float x, const float y)
 {
     uint a = floatBitsToUint(x), b = floatBitsToUint(y);
     bool usual = a - 1u < INFINITE_BITS - 1u; // finite and above 0
-    vec2 l = log2_pair(usual ? x : 1.0);
+    vec2 l = log2_ff(usual ? x : 1.0);
     float bounded = y > 1e10 ? 1e10 : y < -1e10 ? -1e10 : y;
     vec2 p = ff_product(l.x, bounded);
     float power = exp2_of(vec2(p.x, p.y + l.y * bounded));
@@ -244,7 +244,8 @@ uint two_over_pi(const int first)
     return shift == 0u ? digits[word] : digits[word] << shift | digits[word + 1] >> (32u - shift);
 }
 
-// Reduces an angle: x = (quarter + 4 k) pi / 2 + angle, |angle| <= pi / 4, the angle as a pair.
+// Reduces an angle: x = (quarter + 4 k) pi / 2 + angle, |angle| <= pi / 4, the angle as a
+// float-float.
 // Payne and Hanek (1983): of the product with 2 / pi only the digits around the binary point are
 // computed, in integers, 62 of them behind it.
 struct Turned {

@@ -25,7 +25,7 @@ done
 check "no hit differs" has "^hits: 0 of [1-9][0-9]* differ$"
 check "every tree is valid" test "$(grep -c '^  valid    yes$' stdout)" -eq 5
 check "visits are predicted and measured" \
-    test "$(grep -c 'pairs and .* by areas, .* by 32768 lines' stdout)" -eq 5
+    test "$(grep -c 'inner nodes and .* by areas, .* by 32768 lines' stdout)" -eq 5
 for kind in primary shadow diffuse; do
     check "rates of $kind rays" test "$(grep -c "^  $kind  *[0-9.]* Mray/s (" stdout)" -eq 5
 done

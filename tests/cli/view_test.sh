@@ -39,7 +39,7 @@ for pair in boxes:boxes tris:triangles depth:depth stack:stack; do
 done
 visits=$(for name in inner_nodes leaves instances; do figure mean.$name; done |
     awk -v sum="$(sum visits)" '{ v += $1 } END { d = sum / 6144 - v; print (d * d < 1e-8 * v * v) }')
-check "visits are pairs, leaves and instances" test "$visits" = 1
+check "visits are inner nodes, leaves and instances" test "$visits" = 1
 
 # --view-rays chooses the kind of rays.
 for kind in shadow reflected refracted all; do

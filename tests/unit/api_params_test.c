@@ -286,6 +286,33 @@ TEST_IN(no_params_are_the_defaults, begin, device_end)
     whit_refine_destroy(refine);
 }
 
+/* Draws a picture, and gives its bytes as displayed. */
+static void draw_bytes(whit_renderer *renderer, uint8_t rgba[4 * 16 * 16])
+{
+    own_whit_image *image = drawn_by(renderer);
+    whit_image_display_bytes(image, rgba);
+}
+
+TEST_IN(a_view_is_displayed_as_its_params_say, begin, device_end)
+{
+    whit_renderer_params params = small();
+    uint8_t usual[4 * 16 * 16], moved[4 * 16 * 16], fresh[4 * 16 * 16];
+    own_whit_renderer *renderer = renderer_of(&params);
+    draw_bytes(renderer, usual);
+    params.exposure_ev = 0.5;
+    params.soft_highlights = true;
+    assert_int_equal(whit_renderer_set_view(renderer, &params), WHIT_OK);
+    draw_bytes(renderer, moved);
+    own_whit_renderer *another = renderer_of(&params);
+    draw_bytes(another, fresh);
+    assert_memory_equal(moved, fresh, sizeof fresh);
+    params.soft_highlights = false;
+    assert_int_equal(whit_renderer_set_view(another, &params), WHIT_OK);
+    draw_bytes(another, fresh);
+    assert_memory_not_equal(moved, fresh, sizeof fresh);
+    assert_memory_not_equal(usual, fresh, sizeof fresh);
+}
+
 TEST_IN(images_that_there_are_none_of_are_refused, begin, device_end)
 {
     whit_renderer_params params = small();

@@ -237,7 +237,7 @@ static const struct sphere_kind {
     const char *name;
     make_fn make;
     float (*coordinate)(void); /* for scattered subjects */
-    double filtered, sure;     /* least shares that the filter, and the pairs of floats, decide */
+    double filtered, sure;     /* least shares that the filter, and float-floats, decide */
 } sphere_kinds[] = {
     {"ordinary", make_ordinary, NULL, 0.6, 0.99},
     {"grazing", make_grazing, NULL, 0.0, 0.3},

@@ -253,7 +253,7 @@ static const struct triangle_kind {
     float (*coordinate)(void); /* for scattered triangles */
     struct subject (*make)(void);
     double met_min;            /* least share of rays that hit; 0: no ray may hit */
-    double sure_min, sure_max; /* share that pairs of floats decide */
+    double sure_min, sure_max; /* share that float-floats decide */
     int what;
 } triangle_kinds[] = {
     {"cube", in_cube, NULL, 0.01, 0, 1, FLOATS},

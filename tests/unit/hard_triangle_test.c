@@ -1,4 +1,4 @@
-/* Hard triangles: compares the rational oracle, pairs of floats and all levels with fractions. */
+/* Hard triangles: compares the rational oracle, float-floats and all levels with fractions. */
 #include "hard_triangle_fixture.h"
 
 #include "fraction_fixture.h"
@@ -90,7 +90,7 @@ static bool is_sound(const struct gpu_hit *hit)
 
 struct tally {
     uint32_t rays, met, on_edge, on_vertex, wrong; /* wrong: the rational oracle */
-    uint32_t sure, wrong_pairs;                    /* pairs of floats */
+    uint32_t sure, wrong_pairs;                    /* float-floats */
     struct {
         uint32_t met, missed, invented, unsound;
         uint32_t undoubted, far_off; /* wrong answers, and wrong t, beyond the bound of floats */

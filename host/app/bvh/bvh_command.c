@@ -175,7 +175,7 @@ const struct cli_command command_bvh = {
         "+opt behind one improves its trees by reinsertion.\n"
         "SAH: expected cost of a random line by areas, in triangle tests. EPO: area of surfaces "
         "in\n"
-        "boxes that they do not belong to. Pairs and tests: inner nodes opened and triangles\n"
+        "boxes that they do not belong to. Inner and tests: inner nodes opened and triangles\n"
         "tested by random lines that meet the root, counted on the CPU. Mray/s: on the device,\n"
         "rays of the first camera, from what they hit to the lights, and off it at random.\n"
         "Exit code 1: hits differ between builders, or a tree is not valid.\n",

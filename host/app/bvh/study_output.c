@@ -42,7 +42,7 @@ static int name_width(const struct study *study)
 static void print_columns(const struct study *study, int width)
 {
     printf("%-*s  %*s%9s%6s%8s%8s%9s%8s%8s", width, "", (int)(9 * study->thread_count), "build ms",
-           "", "", "", "", "", "pairs", "tests");
+           "", "", "", "", "", "inner", "tests");
     if (study->traced)
         printf("%9s", "Mray/s");
     printf("\n%-*s  ", width, "builder");
@@ -117,10 +117,11 @@ static void print_details(const struct study *study, const struct study_row *row
     print_bins("of size", report->leaves_of_size, WHIT_LEAF_BINS);
     printf("  %-9sSAH %.3f, EPO %.4f, siblings share %.2f %%\n", "cost", report->sah_cost,
            report->epo, 100.0 * report->overlap);
-    printf("  %-9s%.2f pairs and %.2f triangles a line by areas, %.2f and %.2f by %llu lines\n",
-           "visits", report->predicted_inner_nodes, report->predicted_triangles,
-           report->measured_inner_nodes, report->measured_triangles,
-           (unsigned long long)report->measured_rays);
+    printf(
+        "  %-9s%.2f inner nodes and %.2f triangles a line by areas, %.2f and %.2f by %llu lines\n",
+        "visits", report->predicted_inner_nodes, report->predicted_triangles,
+        report->measured_inner_nodes, report->measured_triangles,
+        (unsigned long long)report->measured_rays);
     print_rates(study, row);
     if (study->validate)
         puts("  valid    yes");
@@ -179,9 +180,9 @@ static json_t *bins_document(const uint64_t *bins, uint32_t count)
     return list;
 }
 
-static void put_visits(json_t *visits, double pairs, double triangles)
+static void put_visits(json_t *visits, double inner_nodes, double triangles)
 {
-    document_number(visits, "inner_nodes", pairs);
+    document_number(visits, "inner_nodes", inner_nodes);
     document_number(visits, "triangles", triangles);
 }
 

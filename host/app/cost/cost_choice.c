@@ -184,7 +184,7 @@ static whit_result try_now(const struct choosing *choosing, const struct cost_ch
 static bool is_same(const struct cost_choice *a, const struct cost_choice *b)
 {
     return a->samples == b->samples && a->contrast == b->contrast &&
-           a->samples_most == b->samples_most &&
+           a->samples_max == b->samples_max &&
            memcmp(a->settings, b->settings, sizeof a->settings) == 0;
 }
 
@@ -326,9 +326,9 @@ static whit_result smooth_edges(const struct choosing *choosing, struct cost_kep
         share = fmin(share, visible);
         double contrast = fmax(sample_quantile(contrasts, count, 1.0 - share), CONTRAST_MIN);
         contrast = ceil(contrast * 1e3) / 1e3;
-        if (tried.choice.samples_most == most && tried.choice.contrast == contrast)
+        if (tried.choice.samples_max == most && tried.choice.contrast == contrast)
             break; /* that was tried */
-        tried.choice.samples_most = most;
+        tried.choice.samples_max = most;
         tried.choice.contrast = contrast;
         result = set_choice(choosing, &tried.choice);
         if (result == WHIT_OK)

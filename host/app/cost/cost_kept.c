@@ -80,7 +80,7 @@ static void put_choice(json_t *out, const struct cost_kept_choice *kept)
     document_number(out, "predicted_error", kept->choice.error);
     document_count(out, "samples", kept->choice.samples);
     document_number(out, "contrast", kept->choice.contrast);
-    document_count(out, "samples_most", kept->choice.samples_most);
+    document_count(out, "samples_max", kept->choice.samples_max);
     json_t *settings = document_child(out, "settings");
     for (uint32_t k = 0; k < KNOBS; ++k)
         document_text(settings, knob_table[k].name,
@@ -112,7 +112,7 @@ static bool read_choice(const json_t *object, struct cost_kept_choice *kept)
     kept->choice.ms = document_read_number(object, "predicted_ms", 0.0);
     kept->choice.error = document_read_number(object, "predicted_error", 0.0);
     json_int_t samples = json_integer_value(json_object_get(object, "samples")),
-               most = json_integer_value(json_object_get(object, "samples_most"));
+               most = json_integer_value(json_object_get(object, "samples_max"));
     for (uint32_t k = 0; k < KNOBS; ++k) {
         const char *text = json_string_value(json_object_get(settings, knob_table[k].name));
         uint32_t s = text ? knob_find_setting(&knob_table[k], text) : WHIT_NONE;
@@ -121,7 +121,7 @@ static bool read_choice(const json_t *object, struct cost_kept_choice *kept)
         kept->choice.settings[k] = (uint8_t)s;
     }
     kept->choice.samples = (uint32_t)samples;
-    kept->choice.samples_most = (uint32_t)most;
+    kept->choice.samples_max = (uint32_t)most;
     kept->choice.contrast = document_read_number(object, "contrast", 0.0);
     kept->choice.found = true;
     return kept->budget_ms > 0.0 && kept->choice.contrast >= 0.0 && kept->choice.contrast <= 1.0 &&

@@ -1,8 +1,8 @@
 // Sums and products of two floats without error: the rounded result, and its rounding error (Dekker
 // 1971, "A floating-point technique for extending the available precision"). twin/ff_numbers.h is
 // this file in C.
-#ifndef LIB_PAIRS_GLSL
-#define LIB_PAIRS_GLSL
+#ifndef LIB_FF_SUMS_GLSL
+#define LIB_FF_SUMS_GLSL
 
 vec2 ff_sum(float a, float b) // exact (Knuth's two-sum)
 {
