@@ -316,7 +316,7 @@ static bool write_groups(FILE *file, const char *text)
             smooth = !off;
             found |= smooth;
             number = number ? number : 1;
-            if (smooth) /* in two floats, which have 24 bits each */
+            if (smooth) /* the number in two floats, which hold whole numbers up to 2^24 exactly */
                 fprintf(file, "vn %lu %lu 0", 1 + (number & 0x3fffff), number >> 22);
         } else if (*at == 'f') {
             write_face(file, at, end, smooth);

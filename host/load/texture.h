@@ -26,9 +26,9 @@ struct texture_source {
     const uint8_t *data;
     uint8_t *owned;
     size_t size_bytes;
-    struct texture_key keys[2]; /* that of its bytes is the last one */
+    struct texture_key keys[2]; /* the last one may be a hash of the bytes: see `hashed` */
     uint32_t key_count;
-    bool hashed;    /* keys has that of its bytes */
+    bool hashed;    /* the last key is a hash of the bytes */
     bool too_large; /* exceeds the scene's memory limit, which was logged */
 };
 

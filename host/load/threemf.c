@@ -115,8 +115,8 @@ static uint32_t count_lists(const char *text, const char *name)
 
 /* An object while its tags are read. */
 struct object {
-    int id, pid, index; /* index: that of the material in the list `pid` */
-    int first[2];       /* the same of the first material that is met */
+    int id, pid, index; /* index: place of the material in the list `pid` */
+    int first[2];       /* pid and index of the first material that is met */
     bool has_first, mixed;
 };
 

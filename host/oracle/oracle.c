@@ -230,7 +230,8 @@ static struct number number_of_axis(const struct probe *p, int axis)
     return (struct number){p->shear[axis], error};
 }
 
-/* Measures the line: the chord's middle, and the distance from the centre. */
+/* Computes the middle of the chord, and how far its line is from the sphere's centre. `c`: the
+   centre seen from the ray's origin; `d`: the ray's direction, 1 along its dominant axis. */
 static void chord_measure(const struct number c[3], const struct number d[3], double radius,
                           struct chord *out)
 {

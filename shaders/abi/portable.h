@@ -23,9 +23,10 @@
 #define PORTABLE_UINT        18u
 #define PORTABLE_RELATIONS   22u /* bits: less, at most, equal, unequal, more, at least, step */
 #define PORTABLE_ABS         23u
-/* With these host/render/portable.c finds out whether portable kernels run on a device. */
-#define PORTABLE_SUM      19u /* of the device's own arithmetic */
-#define PORTABLE_PRODUCT  20u /* likewise */
+/* host/render/portable.c runs these to find out whether a device gives portable kernels right
+   results. SUM and PRODUCT are by the device's own arithmetic. */
+#define PORTABLE_SUM      19u
+#define PORTABLE_PRODUCT  20u
 #define PORTABLE_COMPARED 21u /* see compare() of kernel/portable.comp */
 
 #define COMPARED_ROOTS     (1u << 24)

@@ -171,8 +171,9 @@ vec3 off_surface(Surface s, vec3 dir)
 // Tests the user's shape, which is in no tree (hook/shape.glsl).
 void add_shape(vec3 origin, vec3 dir, bool alive, inout Hit hit);
 
-// Instance and primitive that do not block rays from the surface: its own, where it is that of the
-// call or that of the last trace(). Rays from other surfaces are only kept off them (off_surface).
+// Instance and primitive that do not block rays from the surface: those of the surface, if it is the
+// one of this call or of the last trace(). Rays from any other surface start a little off it instead
+// (off_surface).
 uvec2 skip_of(Surface s)
 {
     if (s.instance == hook_hit.instance && s.shade_index == hook_shade)

@@ -26,7 +26,8 @@ struct lines {
     struct line_place *places;  /* in the order in which they are drawn */
     uint32_t count, capacity;
     struct outputs outputs;  /* while lines are read */
-    struct key_table groups; /* likewise: numbers of first lines by the hash of their group */
+    struct key_table groups; /* while lines are read: numbers of first lines by the hash of their
+                                group */
     bool compile;            /* a line has functions or stages that are compiled */
 };
 
