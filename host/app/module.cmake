@@ -36,7 +36,7 @@ add_executable(whit_program
   app/render/frames.c app/render/layers.c app/render/part.c app/render/recipe.c app/render/refine.c
   app/render/render_command.c app/render/repeat.c app/render/resume.c
   app/render/stats.c app/render/view_image.c app/render/cameras.c
-  app/scene/kernels.c app/scene/listing.c app/scene/listing_output.c app/scene/receipt.c
+  app/scene/kernels.c app/scene/listing.c app/scene/listing_output.c app/scene/effect_report.c
   app/scene/scene_command.c app/scene/triangles.c
   app/shader/attempt.c app/shader/extract.c app/shader/shader_command.c
   app/trace/ray_file.c app/trace/trace_command.c)

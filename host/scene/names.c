@@ -1,4 +1,4 @@
-/* Names of the scene's enumerators, as receipts, messages and scene files use them. */
+/* Names of the scene's enumerators, as reports, messages and scene files use them. */
 #include "scene/scene.h"
 
 const char *const scene_model_names[] = {

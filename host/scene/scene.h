@@ -16,7 +16,7 @@
 
 #define SCENE_NONE UINT32_MAX /* no node, no texture, ... */
 
-/* The place where something was defined, for receipts and errors. */
+/* The place where something was defined, for reports and errors. */
 struct scene_origin {
     char *file;    /* NULL: made by whit */
     uint32_t line; /* 1-based; 0: not known */
@@ -91,7 +91,7 @@ struct scene_material {
     struct scene_texture_use textures[SCENE_SLOT_COUNT];
 };
 
-/* A named range of triangles: OBJ group, glTF primitive. For receipts and picking. */
+/* A named range of triangles: OBJ group, glTF primitive. For reports and picking. */
 struct scene_group {
     char *name;
     uint32_t first_triangle, triangle_count;
@@ -341,7 +341,7 @@ bool scene_can_play(const struct scene *scene, const struct scene_channel *chann
 /* A copy of `text` for one of the scene's records. NULL where `text` is NULL or memory ran out; in
    the latter case scene_freeze will fail. */
 char *scene_text(struct scene *scene, const char *text);
-/* Adds a note, which is kept for the receipt and logged at once. */
+/* Adds a note, which is kept for `whit scene` and logged at once. */
 void scene_note(struct scene *scene, enum scene_note_level level, const char *format, ...)
     WHIT_PRINTF(3, 4);
 

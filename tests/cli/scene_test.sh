@@ -8,7 +8,7 @@ shows "scene" "triangles    12 " scene "$CUBE"
 check "lists the camera" grep -q "0  camera .*35 degrees" "$OUT/stdout"
 check "lists the light" grep -q "0  lamp .*point at 2 4 3" "$OUT/stdout"
 check "lists the material" grep -q "0  cube .*phong" "$OUT/stdout"
-check "has the receipt" grep -Eq "^  shadows +yes +light .lamp." "$OUT/stdout"
+check "says why there are shadows" grep -Eq "^  shadows +yes +light .lamp." "$OUT/stdout"
 check "has what is not called for" grep -Eq "^  refraction +- " "$OUT/stdout"
 echo '{"lights": [{"kind": "rectangle", "name": "window", "position": [0, 3, 0], "u": [1, 0, 0], "v": [0, 0, 2]}],
     "objects": [{"shape": "box"}]}' >"$OUT/window.json"

@@ -9,10 +9,10 @@ int listing_print_text(const struct job *job, const whit_scene_info *info, bool 
 /* listing_output.c */
 int listing_print_json(const struct job *job, const whit_scene_info *info);
 
-/* kernels.c, receipt.c: --kernels and --effects, which measure on the device and print; the exit
-   code. EXIT_DIFFERS where an effect that the scene does not call for changes the picture. */
+/* kernels.c, effect_report.c: --kernels and --effects, which measure on the device and print; the
+   exit code. EXIT_DIFFERS where an effect that the scene does not call for changes the picture. */
 int kernels_run(struct job *job, bool json);
-int receipt_run(struct job *job, bool json);
+int effect_report_run(struct job *job, bool json);
 
 /* triangles.c: writes all triangles of the scene at `time_s` to the file `path`. Errors were
    printed. */

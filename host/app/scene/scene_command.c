@@ -40,7 +40,7 @@ static int work(struct job *job, const struct scene_request *request)
     if (result != WHIT_OK)
         return cli_exit_of(result);
     if (request->effects)
-        return receipt_run(job, request->json);
+        return effect_report_run(job, request->json);
     if (request->kernels)
         return kernels_run(job, request->json);
     whit_scene_get_info(job->scene, &info);
