@@ -106,6 +106,7 @@ struct stage_set {
     enum stage of[STAGE_COUNT];      /* the stage whose kernel each runs: itself, or a later one */
     uint32_t classes;                /* classes of materials; each has its own shading kernel */
     uint32_t hit_rows;               /* as variant_hit_rows() */
+    uint32_t lights_each;            /* lights of a dispatch: SPEC_LIGHTS_EACH */
     bool calls[CLASSES_MAX];         /* whether hits of a class send further rays */
     bool asks;                       /* whether hits go on to the shadow stages */
 };

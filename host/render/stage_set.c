@@ -81,8 +81,10 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
 {
     struct set_making making = {.device = device, .job = job, .set = out};
     whit_result result = WHIT_OK;
-    *out = (struct stage_set){
-        .classes = job->classes, .asks = job->asks, .hit_rows = variant_hit_rows(&job->spec)};
+    *out = (struct stage_set){.classes = job->classes,
+                              .asks = job->asks,
+                              .hit_rows = variant_hit_rows(&job->spec),
+                              .lights_each = job->spec.SPEC_LIGHTS_EACH};
     memcpy(out->of, job->of, sizeof out->of);
     for (uint32_t i = 0; i < job->classes; ++i)
         out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||

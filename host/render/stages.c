@@ -23,14 +23,14 @@
 enum { MORE_AT_ONCE = 2 };
 /* A submission cannot be stopped. With all dispatches of a tile it would take seconds in a scene of
    thousands of lights, and Ctrl+C would have to wait for it. */
-enum { DISPATCHES_A_SUBMISSION = 512 };
+enum { DISPATCHES_A_SUBMISSION = 512 }; /* one with several lights counts as so many */
 
 /* A tile on its way through the stages. */
 struct tile_run {
     struct target *target;
     struct gpu_chunk chunk;
     const struct progress *progress;
-    uint32_t dispatches; /* dispatches of the submission being recorded */
+    uint32_t dispatches; /* of the submission being recorded, as DISPATCHES_A_SUBMISSION counts */
     double longest_ms;   /* longest time of a submission so far */
 };
 
@@ -206,13 +206,15 @@ static whit_result record_lights(struct tile_run *run)
     bool shadows = renderer_compiles(renderer, SCENE_EFFECT_SHADOWS);
     whit_result result = WHIT_OK;
     uint32_t lights = run->target->stages.set.asks ? renderer->frame.light_count : 0;
-    for (uint32_t i = 0; result == WHIT_OK && i < lights; ++i) {
+    uint32_t each = by_light ? 1 : run->target->stages.set.lights_each;
+    for (uint32_t i = 0; result == WHIT_OK && i < lights; i += each) {
         uint32_t list = LIST_LIGHTS + (by_light ? i : 0);
         run->chunk.light = i;
         if (shadows)
             result = dispatch_own(run, STAGE_SHAPE, list);
         if (result == WHIT_OK)
             result = dispatch(run, camera ? STAGE_SHADOW : STAGE_SHADOW_LATER, list);
+        run->dispatches += each - 1;
     }
     return result;
 }

@@ -84,6 +84,10 @@ static bool writes_wide_rows(const struct device *device)
     return info->kind == WHIT_DEVICE_CPU && info->int64 && !slow;
 }
 
+/* In scenes of more than LIGHT_LISTS lights, a dispatch adds so many: a lit hit is read, and its
+   sum stored, once for all of them. More would gain little, and a submission may take 100 ms. */
+enum { LIGHTS_EACH = 8 };
+
 static struct gpu_spec make_spec(const struct target *target, const struct scene_effects *effects,
                                  bool secondary)
 {
@@ -120,6 +124,10 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_MINIFICATION = textures_minify(renderer);
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
+    /* A user's shape is asked about one light at a time. */
+    if (renderer->frame.light_count > LIGHT_LISTS &&
+        !shader_has(renderer->params.shader, WHIT_HOOK_INTERSECT))
+        spec.SPEC_LIGHTS_EACH = LIGHTS_EACH;
     if (renderer->params.shader) {
         spec.SPEC_HOOKS = renderer->params.shader->hooks;
         spec.SPEC_FUEL = renderer->params.shader->fuel;

@@ -1,4 +1,5 @@
-// Adds the light of one light, with shadows, to the lit hits of a generation.
+// Adds the light of one light, or of up to SPEC_LIGHTS_EACH lights, with shadows, to the lit hits of a
+// generation.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../bind/stage.glsl"
@@ -35,6 +36,8 @@ Arrival arrival_of[SPEC_PACKET_RAYS];
 // through the trees.
 bool in_shape_shadow[SPEC_PACKET_RAYS];
 
+uint light_index; // of the current light
+
 void face_light(uint r, bool alive, gpu_light light, uint item, uint point)
 {
     Lit lit = lit_of[r];
@@ -50,7 +53,9 @@ void face_light(uint r, bool alive, gpu_light light, uint item, uint point)
 }
 
 EmitterSum emitter_of[SPEC_PACKET_RAYS];
-vec3 sum_of[SPEC_PACKET_RAYS], open_of[SPEC_PACKET_RAYS];
+vec3 sum_of[SPEC_PACKET_RAYS], open_of[SPEC_PACKET_RAYS]; // of the current light
+vec4 own_of[SPEC_PACKET_RAYS];  // the ray's sum so far
+vec3 seen_of[SPEC_PACKET_RAYS]; // of a shadow catcher: its light so far without shadows
 uint rays_of[SPEC_PACKET_RAYS], status_of[SPEC_PACKET_RAYS];
 
 void add_arrival(uint r, gpu_light light, uint point)
@@ -61,7 +66,7 @@ void add_arrival(uint r, gpu_light light, uint point)
     vec3 share = light_share(r, a.wanted, lit_of[r], status_of[r]);
     share = a.wanted ? share : vec3(0.0);
     if (SPEC_PROBE != 0u && SPEC_SHADOWS != 0u && a.wanted)
-        probe_shadow_ray(lit_of[r].id, chunk.light * turns_each() + point, packet_origin[r],
+        probe_shadow_ray(lit_of[r].id, light_index * turns_each() + point, packet_origin[r],
                          packet_dir[r], packet_t_max[r], packet_skip[r], packet_hits[r], share);
     rays_of[r] += uint(a.wanted);
     if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && is_flat(light)) {
@@ -76,24 +81,66 @@ void add_arrival(uint r, gpu_light light, uint point)
     }
 }
 
-// Adds the light of all points to the ray's sum; returns how many shadow rays that took.
-uint leave_lit(uint r, bool alive, gpu_light light)
+bool is_catcher(uint r)
+{
+    return SPEC_CATCHERS != 0u && (lit_of[r].flags & LIT_CATCHER) != 0u;
+}
+
+void fetch_own(uint r, bool alive)
 {
     if (!alive)
-        return 0u;
+        return;
+    own_of[r] = fetch_sum(lit_of[r].id);
+    if (is_catcher(r))
+        seen_of[r] = uintBitsToFloat(hit_rows[lit_of[r].id * HIT_ROWS].xyz);
+}
+
+// Adds the light of all points of the current light to the ray's sum.
+void add_light(uint r, bool alive, gpu_light light)
+{
     vec3 sum = sum_of[r], open = open_of[r];
     if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && is_flat(light)) {
         vec3 emitter_open;
         sum += emitter_light(light, lit_of[r], emitter_of[r], emitter_open);
         open += emitter_open;
     }
+    if (SPEC_LIGHTS_EACH == 1u) // not earlier: values kept during traversal take time
+        fetch_own(r, alive);
+    own_of[r].rgb += sum;
+    if (is_catcher(r))
+        seen_of[r] += open;
+}
+
+void store_own(uint r)
+{
     uint id = lit_of[r].id;
-    vec4 own = fetch_sum(id);
-    store_sum(id, own.rgb + sum, floatBitsToUint(own.w));
-    if (SPEC_CATCHERS != 0u && (lit_of[r].flags & LIT_CATCHER) != 0u)
-        hit_rows[id * HIT_ROWS].xyz =
-            floatBitsToUint(uintBitsToFloat(hit_rows[id * HIT_ROWS].xyz) + open);
-    return rays_of[r];
+    store_sum(id, own_of[r].rgb, floatBitsToUint(own_of[r].w));
+    if (is_catcher(r))
+        hit_rows[id * HIT_ROWS].xyz = floatBitsToUint(seen_of[r]);
+}
+
+// Traces the shadow rays to all points of the current light.
+void light_up(gpu_light light, bool alive[SPEC_PACKET_RAYS], uint item[SPEC_PACKET_RAYS])
+{
+    const bool flats = (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u;
+    uint points = flats && is_flat(light) ? turns_each() : 1u;
+    uint point = 0u;
+    bool more = false;
+    EACH_RAY {
+        emitter_of[r] = EmitterSum(0.0, vec3(0.0), vec3(0.0));
+        sum_of[r] = open_of[r] = vec3(0.0);
+    }
+    do {
+        EACH_RAY face_light(r, alive[r], light, item[r], point);
+        if (SPEC_SHADOWS != 0u)
+            traverse_packets(TRAVERSE_SHADOW, 0.0, frame.root, frame.root8,
+                             light_point(light, point));
+        EACH_RAY add_arrival(r, light, point);
+        point++;
+        more = flats && point < points;
+    } while (another_iteration(more));
+    if (more)
+        report_status(STATUS_UNFINISHED_LOOP);
 }
 
 void main()
@@ -111,23 +158,19 @@ void main()
         item[r] = alive[r] ? item[r] : 0u;
         uint lit = fetch_listed_lit(item[r]);
         lit_of[r] = fetch_lit(alive[r] ? lit : 0u);
-        emitter_of[r] = EmitterSum(0.0, vec3(0.0), vec3(0.0));
-        sum_of[r] = open_of[r] = vec3(0.0);
         rays_of[r] = status_of[r] = 0u;
+        if (SPEC_LIGHTS_EACH > 1u)
+            fetch_own(r, alive[r]);
     }
-    gpu_light light = fetch_light(chunk.light);
-    const bool flats = (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u;
-    uint points = flats && is_flat(light) ? turns_each() : 1u;
-    uint point = 0u;
+    uint end = chunk.light + lights_each();
+    light_index = chunk.light;
     bool more = false;
     do {
-        EACH_RAY face_light(r, alive[r], light, item[r], point);
-        if (SPEC_SHADOWS != 0u)
-            traverse_packets(TRAVERSE_SHADOW, 0.0, frame.root, frame.root8,
-                             light_point(light, point));
-        EACH_RAY add_arrival(r, light, point);
-        point++;
-        more = flats && point < points;
+        gpu_light light = fetch_light(light_index);
+        light_up(light, alive, item);
+        EACH_RAY add_light(r, alive[r], light);
+        light_index++;
+        more = SPEC_LIGHTS_EACH > 1u && light_index < end;
     } while (another_iteration(more));
     if (more)
         report_status(STATUS_UNFINISHED_LOOP);
@@ -135,8 +178,11 @@ void main()
     bool waits[SPEC_PACKET_RAYS];
     EACH_RAY {
         waits[r] = alive[r] && must_wait(status_of[r]);
-        rays += leave_lit(r, alive[r] && !waits[r], light);
-        status |= alive[r] && !waits[r] ? status_of[r] : 0u;
+        if (alive[r] && !waits[r]) {
+            store_own(r);
+            rays += rays_of[r];
+            status |= status_of[r];
+        }
     }
     if (has_bounds_alone())
         list_deferred_rays(waits, item);

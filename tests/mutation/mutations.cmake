@@ -92,6 +92,10 @@ mutation(sums_in_another_order render_probe RED rays_are_those_of_the_picture)
 change(shaders/kernel/resolve.comp [[own.rgb + child_sum(from.x) + straight + child_sum(from.z)]]
   [[child_sum(from.z) + straight + child_sum(from.x) + own.rgb]])
 
+mutation(lights_in_another_order render_light RED many_lights_are_added_in_their_order)
+change(shaders/kernel/shadow.comp [[fetch_light(light_index);]]
+  [[fetch_light(end - 1u - (light_index - chunk.light));]])
+
 mutation(class_too_poor render_effects RED only_pixels_that_see_glass_refract)
 change(host/render/effects.c [[glass ? SCENE_MATERIALS_GLASS : SCENE_MATERIALS_OPAQUE]]
   [[glass ? SCENE_MATERIALS_OPAQUE : SCENE_MATERIALS_GLASS]])

@@ -225,7 +225,6 @@ static struct scene *lamps_scene(int lamps)
     return scene;
 }
 
-/* Each light is a dispatch of its own. */
 TEST_BY_TURNS(many_lights_are_drawn, 1, 4)
 {
     const whit_renderer_params params = {.width = 8, .height = 8, .depth = 0};

@@ -283,8 +283,8 @@ TEST_BY_TURNS(closed_rooms_stay_dark, 1, 4)
 /* ---- Catchers ---- */
 
 /* A shadow catcher in front of an even background. A box and a red pane above it are out of view;
-   the sun casts their shadows into view. */
-static struct scene *catcher_scene(bool lit)
+   the sun casts their shadows into view. `black`: lamps before and after it that give no light. */
+static struct scene *catcher_scene(bool lit, int black)
 {
     struct scene *scene = dark_scene((double[]){0, eye_height, 0}, (double[]){0, 0, 0});
     struct scene_material m = material_plain("catcher"), pane = material_plain("pane");
@@ -299,10 +299,14 @@ static struct scene *catcher_scene(bool lit)
     add_object(scene, mesh_plane(30), m, 0, 7, 0); /* a catcher above casts no shadow */
     add_object(scene, mesh_box(1, 0.1, 4), pane, -4.5, 5, 0);
     add_object(scene, mesh_box(1, 0.1, 4), material_plain("box"), -6, 5, 0);
-    if (lit)
-        scene_put_sun(scene, 1, -1, 0, 3.0f);
-    else
-        scene_put_lamp(scene, 0, -5, 0, 1.0f); /* below */
+    for (int i = 0; i <= black; ++i) {
+        if (i != black / 2)
+            scene_put_lamp(scene, 0, 6, 0, 0.0f);
+        else if (lit)
+            scene_put_sun(scene, 1, -1, 0, 3.0f);
+        else
+            scene_put_lamp(scene, 0, -5, 0, 1.0f); /* below */
+    }
     return scene;
 }
 
@@ -312,7 +316,7 @@ TEST_BY_TURNS(catchers_show_shadows_alone, 2, 4)
         whit_renderer_params params = {.width = 201, .height = 1, .depth = 4};
         params.camera = (whit_camera)CAMERA_AT(0, 8, 0, 0, 0, 0, 0, 0, -1, 0.17);
         params.all_effects = all;
-        own_image image = color_of(catcher_scene(true), NULL, &params);
+        own_image image = color_of(catcher_scene(true, all ? 0 : LIGHT_LISTS + 1), NULL, &params);
         uint32_t clear = 0, dark = 0, red = 0;
         for (uint32_t x = 0; x < image.width; ++x) {
             const float *p = &image.pixels[4 * x];
@@ -325,7 +329,7 @@ TEST_BY_TURNS(catchers_show_shadows_alone, 2, 4)
         assert_true(clear > 80 && dark > 30 && red > 30 && clear + dark + red >= 195);
     }
     const whit_renderer_params params = {.width = 1, .height = 1, .depth = 4};
-    own_image dark = color_of(catcher_scene(false), NULL, &params);
+    own_image dark = color_of(catcher_scene(false, 0), NULL, &params);
     assert_true(dark.pixels[0] == 0.5f);
 }
 
