@@ -46,6 +46,28 @@ static whit_result check_room(const struct device *device)
                        device->info.name);
 }
 
+/* Finds the functions of extensions; `tells`: the device tells figures of its pipelines. */
+static void find_functions(struct device *device, bool tells)
+{
+    if (tells) {
+        device->get_executables = (PFN_vkGetPipelineExecutablePropertiesKHR)LAYERS_BESIDE(
+            vkGetDeviceProcAddr(device->vk, "vkGetPipelineExecutablePropertiesKHR"));
+        device->get_executable_statistics = (PFN_vkGetPipelineExecutableStatisticsKHR)LAYERS_BESIDE(
+            vkGetDeviceProcAddr(device->vk, "vkGetPipelineExecutableStatisticsKHR"));
+    }
+    /* The loader (1.3.239) looks the device of a named object up in its list of instances, to which
+       other threads may add theirs, without a lock. Validation locks around both (layers.h). */
+    if (device->debug_utils && device->validation)
+        device->set_object_name = (PFN_vkSetDebugUtilsObjectNameEXT)LAYERS_BESIDE(
+            vkGetDeviceProcAddr(device->vk, "vkSetDebugUtilsObjectNameEXT"));
+    if (device->debug_utils) {
+        device->begin_label = (PFN_vkCmdBeginDebugUtilsLabelEXT)LAYERS_BESIDE(
+            vkGetDeviceProcAddr(device->vk, "vkCmdBeginDebugUtilsLabelEXT"));
+        device->end_label = (PFN_vkCmdEndDebugUtilsLabelEXT)LAYERS_BESIDE(
+            vkGetDeviceProcAddr(device->vk, "vkCmdEndDebugUtilsLabelEXT"));
+    }
+}
+
 static whit_result logical_create(struct device *device)
 {
     uint32_t timestamp_bits = 0;
@@ -99,23 +121,7 @@ static whit_result logical_create(struct device *device)
     if (result != WHIT_OK)
         return result;
     LAYERS_BESIDE(vkGetDeviceQueue(device->vk, device->queue_family, 0, &device->queue));
-    if (tells) {
-        device->get_executables = (PFN_vkGetPipelineExecutablePropertiesKHR)LAYERS_BESIDE(
-            vkGetDeviceProcAddr(device->vk, "vkGetPipelineExecutablePropertiesKHR"));
-        device->get_executable_statistics = (PFN_vkGetPipelineExecutableStatisticsKHR)LAYERS_BESIDE(
-            vkGetDeviceProcAddr(device->vk, "vkGetPipelineExecutableStatisticsKHR"));
-    }
-    /* The loader (1.3.239) looks the device of a named object up in its list of instances, to which
-       other threads may add theirs, without a lock. Validation locks around both (layers.h). */
-    if (device->debug_utils && device->validation)
-        device->set_object_name = (PFN_vkSetDebugUtilsObjectNameEXT)LAYERS_BESIDE(
-            vkGetDeviceProcAddr(device->vk, "vkSetDebugUtilsObjectNameEXT"));
-    if (device->debug_utils) {
-        device->begin_label = (PFN_vkCmdBeginDebugUtilsLabelEXT)LAYERS_BESIDE(
-            vkGetDeviceProcAddr(device->vk, "vkCmdBeginDebugUtilsLabelEXT"));
-        device->end_label = (PFN_vkCmdEndDebugUtilsLabelEXT)LAYERS_BESIDE(
-            vkGetDeviceProcAddr(device->vk, "vkCmdEndDebugUtilsLabelEXT"));
-    }
+    find_functions(device, tells);
     device_name_object(device, VK_OBJECT_TYPE_DEVICE, (uint64_t)device->vk, "whit");
     device_name_object(device, VK_OBJECT_TYPE_QUEUE, (uint64_t)device->queue, "compute");
     return WHIT_OK;
