@@ -8,12 +8,12 @@
 // The exact hit of a record's triangle. `hit`: it is known that it is hit, and only the key is
 // wanted. Without SPEC_SETTLES there is no integer arithmetic: a ray that float-float leaves
 // undecided is deferred.
-ExactMeeting meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, inout uint status)
+ExactCandidate meet_record_triangle(vec3 origin, vec3 dir, uint record, bool hit, inout uint status)
 {
     vec3 v0 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS));
     vec3 v1 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 1u));
     vec3 v2 = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS + 2u));
-    ExactMeeting m;
+    ExactCandidate m;
     bool key_known, finished = true;
     bool known = ff_meet(origin, dir, v0, v1, v2, m, key_known);
     known = hit ? key_known : known;
@@ -34,7 +34,7 @@ struct Ends {
 };
 
 // The exact hit of a record's sphere; a ray may be deferred as in meet_record_triangle.
-ExactMeeting meet_record_sphere(vec3 origin, vec3 dir, uint record, Ends ends, inout uint status)
+ExactCandidate meet_record_sphere(vec3 origin, vec3 dir, uint record, Ends ends, inout uint status)
 {
     uvec4 r1 = fetch_triangle_row(record * TRIANGLE_ROWS + 1u);
     vec3 center = row_vec3(fetch_triangle_row(record * TRIANGLE_ROWS));
@@ -53,7 +53,7 @@ ExactMeeting meet_record_sphere(vec3 origin, vec3 dir, uint record, Ends ends, i
     precise vec3 to_center = center - origin;
     precise vec3 from_center = dir * on_sphere.key - to_center;
     vec2 square = square_from_dir(from_center);
-    ExactMeeting m;
+    ExactCandidate m;
     m.met = on_sphere.met && (!ends.self || on_sphere.inward);
     m.front = !on_sphere.at_exit;
     m.key = on_sphere.key;
@@ -63,10 +63,10 @@ ExactMeeting meet_record_sphere(vec3 origin, vec3 dir, uint record, Ends ends, i
     return m;
 }
 
-ExactMeeting meet_record(vec3 origin, vec3 dir, uint record, bool hit, Ends ends,
+ExactCandidate meet_record(vec3 origin, vec3 dir, uint record, bool hit, Ends ends,
                          inout uint status)
 {
-    ExactMeeting m;
+    ExactCandidate m;
     bool sphere = SPEC_SPHERES == SPHERES_ONLY;
     if (SPEC_SPHERES == SPHERES_SOME)
         sphere = (fetch_triangle_row(record * TRIANGLE_ROWS + 1u).w & TRIANGLE_SPHERE) != 0u;
@@ -78,7 +78,7 @@ ExactMeeting meet_record(vec3 origin, vec3 dir, uint record, bool hit, Ends ends
 }
 
 // Replaces the bounds of a candidate by the exact result.
-void settle_candidate(float t_min, ExactMeeting exact, inout Candidate m)
+void settle_candidate(float t_min, ExactCandidate exact, inout Candidate m)
 {
     m.met = m.met && exact.met && exact.key >= t_min;
     m.front = exact.front;
@@ -91,7 +91,7 @@ void settle_candidate(float t_min, ExactMeeting exact, inout Candidate m)
 
 // Sets the fields of a hit triangle that shading and filters also need: `owned`, and in a flat tree
 // `front`.
-void settle_sides(RaySetup ray, Primitive p, ExactMeeting exact, inout Candidate m)
+void settle_sides(RaySetup ray, Primitive p, ExactCandidate exact, inout Candidate m)
 {
     precise vec3 a = row_vec3(p.r0) - ray.origin;
     precise vec3 b = row_vec3(p.r1) - ray.origin;
@@ -125,7 +125,7 @@ void settle(RaySetup ray, vec3 origin, vec3 dir, float t_min, uint record, Primi
     Ends ends = Ends(t_min, at_exit, p.self);
     bool first = true, again;
     do {
-        ExactMeeting exact = meet_record(from, along, record, !first, ends, hit.status);
+        ExactCandidate exact = meet_record(from, along, record, !first, ends, hit.status);
         again = false;
         if (first) {
             m.rounded = m.rounded && (!p.is_sphere || exact.front != at_exit);

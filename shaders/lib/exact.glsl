@@ -326,7 +326,7 @@ float round_quotient(ivec2 range, int top_d, int top_n, out bool finished)
     return uintBitsToFloat(biased > 254 ? 0x7f800000u : bits);
 }
 
-struct ExactMeeting {
+struct ExactCandidate {
     bool met; // at t >= 0, in the closed triangle, not edge-on; false where the key exceeds the
               // largest float
     bool front;
@@ -336,7 +336,7 @@ struct ExactMeeting {
 
 // Decides exactly whether and where the ray meets the triangle. Not `finished`: the driver has
 // ended a loop (lavapipe: after 65,535 iterations per subgroup).
-ExactMeeting exact_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out bool finished)
+ExactCandidate exact_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out bool finished)
 {
     decode_point(POINT_DIR, dir);
     decode_point(POINT_ORIGIN, origin);
@@ -353,7 +353,7 @@ ExactMeeting exact_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out bo
     ivec2 top = make_positive(range, signs);
     uint zeros = leading_zeros(range, WIDE_D, top.x);
     float whole = float(leading_bits(range, WIDE_D, top.x, zeros));
-    ExactMeeting m;
+    ExactCandidate m;
     precise float u = float(leading_bits(range, WIDE_B, top.x, zeros)) / whole;
     precise float v = float(leading_bits(range, WIDE_C, top.x, zeros)) / whole;
     m.u = u;

@@ -83,7 +83,7 @@ PairEdges ff_edges(PairTriangle p)
 
 // The result of exact_meet(). False: float-float arithmetic does not decide it. `key_known`: m.key is the
 // key if the triangle is met.
-bool ff_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out ExactMeeting m,
+bool ff_meet(vec3 origin, vec3 dir, vec3 v0, vec3 v1, vec3 v2, out ExactCandidate m,
                out bool key_known)
 {
     PairTriangle p = ff_triangle(origin, dir, v0, v1, v2);
