@@ -16,14 +16,17 @@
 
 /* whit adds a light where the model's own lights reach less than this share of what is seen. */
 static const double LIT_ENOUGH = 0.5;
+/* Below this share, what they do not reach gets ambient light, and is not black. */
+static const double LIT_NEARLY = 0.9;
 /* Where even with the added directional light less than this share is lit, the camera is taken to
    be in a closed box, and a lamp is added: shadows alone would leave more lit. */
 static const double BOXED = 0.25;
 
 /* Lights that were added to a scene: whit's own light (`key`), lights made from emissive surfaces
-   (`emitters`), whose intensity was scaled (`exposed`). */
+   (`emitters`), whose intensity was scaled (`exposed`). `partial`: lights of a model leave more
+   than a tenth of what is seen dark. */
 struct light_kinds {
-    bool key, emitters, exposed;
+    bool key, emitters, exposed, partial;
 };
 
 static void set_color(float out[3], float r, float g, float b)
@@ -204,6 +207,7 @@ static whit_result help_lights(struct scene *scene, const struct scene_pose *pos
     whit_result result = WHIT_OK;
     if (!found->key)
         result = freeze_lit_share(scene, &share);
+    found->partial = share < LIT_NEARLY;
     if (result == WHIT_OK && share < LIT_ENOUGH) {
         snprintf(why, sizeof why, "the file's light reaches %.0f %% of what is seen",
                  100.0 * share);
@@ -247,7 +251,8 @@ static void add_ambient(struct scene *scene, const struct light_kinds *lights)
 {
     /* Scaled emission stands for the lights of a bright picture, which has more ambient light;
        emission at its stated strength is a lamp in the dark. */
-    float level = lights->key || lights->exposed ? 0.1f : lights->emitters ? 0.03f : 0.0f;
+    bool bright = lights->key || lights->exposed || lights->partial;
+    float level = bright ? 0.1f : lights->emitters ? 0.03f : 0.0f;
     set_color(scene->ambient, level, level, level);
     if (level > 0.0f)
         scene_note(scene, SCENE_NOTE_INFO, "no ambient light in the file: %g was added",

@@ -13,22 +13,20 @@
 #include "scene/lit.h"
 #include "scene/pose.h"
 
-#define PROBES      1024
+#define PROBES     1024
 /* Lights are scaled so that SHARE of the probed surface area would be at most BRIGHTNESS bright if
    it were white. */
-#define SHARE       0.9
-#define BRIGHTNESS  0.8
+#define SHARE      0.9
+#define BRIGHTNESS 0.8
 /* Stated lights are scaled only where that brightness is below MIN or above MAX. */
-#define MIN         0.02
-#define MAX         2.0
-/* A model's exposure changes only where BURNT_SHARE of what is seen is brighter than BURNT, or
-   where SHARE of it would be below BLACK if it were white. Lowering it keeps half of what is seen
-   above LOW. */
-#define BURNT       1.25
-#define BURNT_SHARE 0.25
-#define BLACK       0.02
-#define LOW         0.1
-#define EV_MAX      32.0
+#define MIN        0.02
+#define MAX        2.0
+/* A model's exposure changes only where less than SHARE of what is seen is at most 1, or where
+   SHARE of it would be below BLACK if it were white. Lowering it keeps half of what is seen above
+   LOW. */
+#define BLACK      0.02
+#define LOW        0.03
+#define EV_MAX     32.0
 
 struct probe_list {
     double values[PROBES];
@@ -228,8 +226,8 @@ static double exposure_of(struct freeze_seen *seen, double *burnt)
     double bright = at_share(seen->shown, seen->count, SHARE), ev = 0.0;
     double middle = at_share(seen->shown, seen->count, 0.5);
     double white = at_share(seen->white, seen->count, SHARE);
-    *burnt = share_from(seen->shown, seen->count, BURNT);
-    if (*burnt > BURNT_SHARE)
+    *burnt = share_from(seen->shown, seen->count, 1.0);
+    if (bright > 1.0)
         ev = fmax(floor(-2.0 * same_log2(bright)) / 2.0,
                   fmin(ceil(2.0 * same_log2(LOW / middle)) / 2.0, 0.0));
     else if (white < BLACK && bright > 0.0)

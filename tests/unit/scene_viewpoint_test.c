@@ -392,7 +392,8 @@ TEST(a_model_that_burns_out_is_exposed_less)
         double lo, hi;
     } cases[] = {{4000.0f, 0.8f, true, -11.0, -8.5}, {4.0f, 0.8f, true, 0.0, 0.0},
                  {4000.0f, 0.8f, false, 0.0, 0.0},   {4.0f, 0.01f, true, 0.0, 0.0},
-                 {0.01f, 0.8f, true, 6.0, 10.0},     {8.0f, 0.3f, true, 0.0, 0.0}};
+                 {0.01f, 0.8f, true, 6.0, 10.0},     {8.0f, 0.3f, true, 0.0, 0.0},
+                 {5.9f, 0.8f, true, -0.5, -0.5}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         own_scene *scene =
             lamp_over_floor(cases[i].level, cases[i].albedo, cases[i].is_model, WHIT_LIGHTS_FILE);
@@ -500,17 +501,24 @@ TEST(surfaces_brighter_by_light_than_by_emission_get_help)
     assert_added(block_that_emits(2.0f), 0, 0);
 }
 
-/* A wall with a circle of light of this radius, in a view of 5.1 by 6.8 units. */
-static struct scene *wall_with_spot(double radius)
+/* A wall with a circle of light of this radius, in a view of 5.1 by 6.8 units. `is_stated`: it is
+   strong, and the file states an ambient light and wants no other. */
+static struct scene *wall_with_spot(double radius, bool is_stated)
 {
     struct scene *scene = empty_scene();
     float edge = (float)(1.0 - cos(atan(radius / 5.0)));
+    float level = is_stated ? 3.0f : 1.0f;
     scene_put(scene, mesh_box(100, 100, 0.1), NULL);
+    if (is_stated) {
+        scene->lights_wanted = WHIT_LIGHTS_FILE;
+        scene->has_ambient = true;
+        set_rgb(scene->ambient, 0.1f, 0.1f, 0.1f);
+    }
     scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_SPOT,
                                                 .node = SCENE_NONE,
                                                 .position = {0, 0, 5.05},
                                                 .direction = {0, 0, -1},
-                                                .color = {1, 1, 1},
+                                                .color = {level, level, level},
                                                 .versine_inner = edge,
                                                 .versine_outer = edge});
     return seen_from(scene, (const double[]){0, 0, 10.05}, (const double[]){0, 0, 0}, 0.5);
@@ -518,8 +526,27 @@ static struct scene *wall_with_spot(double radius)
 
 TEST(lamps_that_light_less_than_half_get_help)
 {
-    assert_added(wall_with_spot(2.1), 1, 0);
-    assert_added(wall_with_spot(2.55), 0, 0);
+    assert_added(wall_with_spot(2.1, false), 1, 0);
+    assert_added(wall_with_spot(2.55, false), 0, 0);
+}
+
+TEST(what_lamps_leave_dark_gets_ambient_light)
+{
+    const struct {
+        double radius;
+        float ambient;
+    } cases[] = {{2.1, 0.1f}, {2.55, 0.1f}, {4.5, 0.0f}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        own_scene *scene = wall_with_spot(cases[i].radius, false);
+        assert_float_equal(scene->ambient[1], cases[i].ambient, 0.0);
+    }
+}
+
+/* Burnt out are 40 % of what is seen, and half of it is as dark before. */
+TEST(a_spot_in_the_dark_is_exposed_less)
+{
+    own_scene *scene = wall_with_spot(2.1, true);
+    assert_true(scene->exposure_ev < 0.0 && scene->exposure_ev >= -1.5);
 }
 
 /* The camera stands in a box under the sun. `open`: as for walls(). `glass`: of the top. */
