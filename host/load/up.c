@@ -11,6 +11,9 @@
 static const double SLAB = 0.02, STANDS = 0.15, HARDLY = 0.02;
 /* Surfaces that cover at least this share of the ground are a floor. */
 static const double FLOOR = 0.5;
+/* Feet carry a model if the box around them covers at least FLOOR of the ground. A side on which it
+   hardly stands, such as the back of a car, covers less than this share. */
+static const double EDGE = 0.4;
 /* A floor may also lie up to this share of the extent above the end, as on a foundation. */
 static const double LOW = 0.1;
 /* A model thinner than this share of its other sides is a board, which may stand on an edge. */
@@ -45,7 +48,8 @@ struct shape {
 
 static struct shape measure(const struct scene *scene)
 {
-    struct shape shape = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    struct shape shape;
+    double3_no_box(shape.lo, shape.hi);
     for (uint32_t m = 0; m < scene->mesh_count; ++m)
         for (size_t i = 0; i < 3 * (size_t)scene->meshes[m].vertex_count; ++i) {
             double value = (double)scene->meshes[m].positions[i];
@@ -55,20 +59,29 @@ static struct shape measure(const struct scene *scene)
     return shape;
 }
 
+/* The area of a box along two axes. */
+static double area_of(const struct shape *box, int u, int v)
+{
+    return fmax(box->hi[u] - box->lo[u], 0.0) * fmax(box->hi[v] - box->lo[v], 0.0);
+}
+
 /* The triangles at the lower end of an axis, as shares of the area of the box's face at that end
    (the ground). */
 struct ending {
     double flat; /* covered by triangles within SLAB of the end */
     double low;  /* covered by flat triangles within LOW of the end, each side of a solid counted */
     double rest; /* covered by the box around all triangles not in `flat`; 0: there are none */
+    double feet; /* covered by the box around all corners within SLAB of the end */
 };
 
 static struct ending look_below(const struct scene *scene, const struct shape *shape, int axis)
 {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    double ground = (shape->hi[u] - shape->lo[u]) * (shape->hi[v] - shape->lo[v]), area = 0.0;
-    struct shape rest = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    double extent = shape->hi[axis] - shape->lo[axis], low = 0.0;
+    double ground = area_of(shape, u, v), area = 0.0, low = 0.0;
+    struct shape rest, feet;
+    double extent = shape->hi[axis] - shape->lo[axis];
+    double3_no_box(rest.lo, rest.hi);
+    double3_no_box(feet.lo, feet.hi);
     double top = shape->lo[axis] + SLAB * extent, low_top = shape->lo[axis] + LOW * extent;
     for (uint32_t m = 0; m < scene->mesh_count; ++m)
         for (uint32_t t = 0; t < scene->meshes[m].triangle_count; ++t) {
@@ -82,14 +95,17 @@ static struct ending look_below(const struct scene *scene, const struct shape *s
                 low += covered;
             if (highest <= top)
                 area += covered;
-            else
-                for (int i = 0; i < 9; ++i) {
-                    rest.lo[i % 3] = fmin(rest.lo[i % 3], p[i / 3][i % 3]);
-                    rest.hi[i % 3] = fmax(rest.hi[i % 3], p[i / 3][i % 3]);
-                }
+            for (int i = 0; i < 3; ++i) {
+                if (highest > top)
+                    double3_grow_box(rest.lo, rest.hi, p[i]);
+                if (p[i][axis] <= top)
+                    double3_grow_box(feet.lo, feet.hi, p[i]);
+            }
         }
-    double taken = fmax(rest.hi[u] - rest.lo[u], 0.0) * fmax(rest.hi[v] - rest.lo[v], 0.0);
-    return ground > 0.0 ? (struct ending){area / ground, low / ground, taken / ground}
+    return ground > 0.0 ? (struct ending){.flat = area / ground,
+                                          .low = low / ground,
+                                          .rest = area_of(&rest, u, v) / ground,
+                                          .feet = area_of(&feet, u, v) / ground}
                         : (struct ending){0};
 }
 
@@ -110,7 +126,8 @@ whit_up up_guess(const struct scene *scene, bool z_usual)
     bool board = extent[2] < BOARD * fmin(extent[0], extent[1]);
     /* Programs with z upwards put the ground at z = 0. */
     bool grounded = fabs(shape.lo[2]) <= SLAB * extent[2] && fabs(shape.lo[1]) > SLAB * extent[1];
-    bool stands = (z.flat >= STANDS && y.flat < HARDLY) || (z.low >= FLOOR && y.low < HARDLY);
+    bool stands = (z.flat >= STANDS && y.flat < HARDLY) || (z.low >= FLOOR && y.low < HARDLY) ||
+                  (z.feet >= FLOOR && y.feet < EDGE);
     return !board && grounded && stands ? WHIT_UP_Z : WHIT_UP_Y;
 }
 

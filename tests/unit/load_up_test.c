@@ -53,6 +53,30 @@ TEST(what_stands_on_z_is_turned)
     assert_int_equal(guess(mesh_icosphere(1, 3), true, false), WHIT_UP_Y);
 }
 
+/* A table whose four legs cover a hundredth of the ground. */
+static whit_up guess_table(bool along_z, float at)
+{
+    own_scene *scene = scene_begin(NULL, "test");
+    struct scene_mesh parts[5] = {raised(mesh_box(2, 0.1, 2), at + 0.95f)};
+    for (int i = 1; i < 5; ++i) {
+        parts[i] = raised(mesh_box(0.1, 0.9, 0.1), at + 0.45f);
+        for (uint32_t k = 0; k < parts[i].vertex_count; ++k) {
+            parts[i].positions[3 * (size_t)k] += i & 1 ? 0.9f : -0.9f;
+            parts[i].positions[3 * (size_t)k + 2] += i & 2 ? 0.9f : -0.9f;
+        }
+    }
+    for (int i = 0; i < 5; ++i)
+        scene_put(scene, along_z ? laid(parts[i]) : parts[i], NULL);
+    return up_guess(scene, false);
+}
+
+TEST(what_stands_on_feet_is_turned)
+{
+    assert_int_equal(guess_table(true, 0), WHIT_UP_Z);
+    assert_int_equal(guess_table(false, 0), WHIT_UP_Y);
+    assert_int_equal(guess_table(true, -0.5f), WHIT_UP_Y);
+}
+
 TEST(boards_keep_standing_and_floors_lie)
 {
     assert_int_equal(guess(mesh_plane(4), true, false), WHIT_UP_Y);
