@@ -48,7 +48,7 @@ static int refuse(const char *word)
     const char *names[COMMAND_COUNT];
     for (uint32_t i = 0; i < COMMAND_COUNT; ++i)
         names[i] = commands[i]->name;
-    const char *kind = word[0] == '-' ? "option" : "command";
+    const char *kind = word[0] == '-' ? "option" : "command or file";
     const char *nearest = text_nearest(word, names, COMMAND_COUNT);
     if (nearest)
         cli_error("there is no %s `%s`; did you mean `whit %s`? (see `whit --help`)", kind, word,

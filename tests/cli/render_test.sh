@@ -170,5 +170,5 @@ check "behind another letter too (got $status)" test "$status" -eq 0 -a -s "$OUT
 check "and nothing said of this one" test "$(grep -c some.cube.png "$OUT/stderr")" -eq 0
 alone nothing.json
 check "what is no file is no command (got $status)" test "$status" -eq 2
-check "and said" grep -q "there is no command .nothing.json." "$OUT/stderr"
+check "and said" grep -q "there is no command or file .nothing.json." "$OUT/stderr"
 finish

@@ -17,7 +17,7 @@ check "version is a number" grep -Eq '^whit [0-9]+\.[0-9]+\.[0-9]+$' "$OUT/stdou
 
 expect 2 "no arguments"
 check "no arguments: usage on stderr" grep -q "^usage: whit" "$OUT/stderr"
-refuse 2 "unknown command" "there is no command .paint." paint
+refuse 2 "unknown command" "there is no command or file .paint." paint
 refuse 2 "misspelt command" "did you mean .whit render." rendre
 refuse 2 "unknown option of the program" "there is no option .--paint." --paint
 
