@@ -1,5 +1,6 @@
 #include "base/watch.h"
 
+#include <errno.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,8 +17,12 @@
 #include "base/threads.h"
 
 struct watched {
-    int folder; /* inotify's number of the folder */
-    char *name; /* in that folder */
+    char *path;
+    int folder; /* inotify's number of the folder that is watched */
+    /* The name that is watched for in that folder: the file's, or where its folder is missing, that
+       of the uppermost folder that is. */
+    char *name;
+    bool lacks_folder;
 };
 
 struct watch {
@@ -97,6 +102,7 @@ void watch_clear(struct watch *watch)
         return;
     for (uint32_t i = 0; i < watch->count; ++i) {
         (void)inotify_rm_watch(watch->fd, watch->files[i].folder); /* works once per folder */
+        free(watch->files[i].path);
         free(watch->files[i].name);
     }
     watch->count = 0;
@@ -126,21 +132,52 @@ static bool has_changed(const char *path, int64_t since_ns)
     return changed_ns > since_ns && changed_ns <= watch_now_ns();
 }
 
+/* Watches the folder of `path`, or the nearest one above that is there: `path` is then cut to what
+   is missing in it. Below 0: there is none. */
+static int watch_folder(const struct watch *watch, char *path)
+{
+    const uint32_t usual =
+        IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVE_SELF | IN_DELETE_SELF | IN_MASK_ADD;
+    for (bool whole = true;; whole = false) {
+        char *folder = path_folder(path);
+        int number = folder ? inotify_add_watch(watch->fd, folder[0] ? folder : ".",
+                                                whole ? usual : usual | IN_CREATE)
+                            : -1;
+        bool missing = number < 0 && (errno == ENOENT || errno == ENOTDIR);
+        size_t length = missing && folder ? strlen(folder) : 0;
+        free(folder);
+        if (length <= 1)
+            return number;
+        path[length - 1] = '\0';
+    }
+}
+
+static void place(const struct watch *watch, struct watched *file)
+{
+    struct stat info;
+    bool comes = true; /* a missing folder comes while the one above begins to be watched */
+    while (comes) {
+        char *path = string_copy(file->path);
+        free(file->name);
+        file->folder = path ? watch_folder(watch, path) : -1;
+        file->name = path ? string_copy(path_name(path)) : NULL;
+        file->lacks_folder = path && strlen(path) < strlen(file->path);
+        comes = file->lacks_folder && file->folder >= 0 && stat(path, &info) == 0;
+        free(path);
+    }
+}
+
 static void add_one(struct watch *watch, const char *path, int64_t since_ns)
 {
-    char *folder = path_folder(path);
-    if (!folder)
+    struct watched file = {.path = string_copy(path)};
+    if (!file.path)
         return;
-    struct watched file = {
-        .folder =
-            inotify_add_watch(watch->fd, folder[0] ? folder : ".", IN_CLOSE_WRITE | IN_MOVED_TO),
-        .name = string_copy(path_name(path)),
-    };
-    free(folder);
+    place(watch, &file);
     if (file.folder < 0 || !file.name ||
-        !ARRAY_PUSH(watch->files, watch->count, watch->capacity, file))
+        !ARRAY_PUSH(watch->files, watch->count, watch->capacity, file)) {
+        free(file.path);
         free(file.name);
-    else if (has_changed(path, since_ns)) {
+    } else if (has_changed(path, since_ns)) {
         watch->missed = true;
         watch->wake(NULL);
     }
@@ -159,14 +196,40 @@ void watch_add(struct watch *watch, const char *path, int64_t since_ns)
     free(target);
 }
 
-static bool is_watched(const struct watch *watch, const struct inotify_event *event)
+/* Whether an event is about a file, or about a folder that it is in. */
+static bool is_about(const struct inotify_event *event, const struct watched *file)
+{
+    if (event->wd != file->folder)
+        return false;
+    if (event->mask & (IN_MOVE_SELF | IN_DELETE_SELF))
+        return true;
+    return event->len > 0 && file->name && strcmp(file->name, event->name) == 0 &&
+           (file->lacks_folder || !(event->mask & IN_CREATE));
+}
+
+static void let_go(const struct watch *watch, int folder)
 {
     for (uint32_t i = 0; i < watch->count; ++i) {
-        if (watch->files[i].folder == event->wd && event->len > 0 &&
-            strcmp(watch->files[i].name, event->name) == 0)
-            return true;
+        if (watch->files[i].folder == folder)
+            return;
     }
-    return false;
+    (void)inotify_rm_watch(watch->fd, folder);
+}
+
+static bool take_event(struct watch *watch, const struct inotify_event *event)
+{
+    bool changed = event->mask & IN_Q_OVERFLOW; /* nothing is known of events without room */
+    for (uint32_t i = 0; i < watch->count; ++i) {
+        struct watched *file = &watch->files[i];
+        if (!is_about(event, file))
+            continue;
+        changed = true;
+        if (file->lacks_folder || event->mask & (IN_MOVE_SELF | IN_DELETE_SELF))
+            place(watch, file);
+    }
+    if (changed)
+        let_go(watch, event->wd);
+    return changed;
 }
 
 bool watch_changed(struct watch *watch)
@@ -177,8 +240,7 @@ bool watch_changed(struct watch *watch)
     while (watch && (bytes = read(watch->fd, buffer, sizeof buffer)) > 0) {
         for (ssize_t at = 0; at < bytes;) {
             const struct inotify_event *event = (const void *)(buffer + at);
-            /* Nothing is known of events that the queue had no room for. */
-            changed = changed || (event->mask & IN_Q_OVERFLOW) || is_watched(watch, event);
+            changed = take_event(watch, event) || changed;
             at += (ssize_t)(sizeof *event + event->len);
         }
     }

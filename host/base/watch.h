@@ -12,15 +12,16 @@ struct watch;
    watch_changed may have something to tell. */
 struct watch *watch_create(void (*wake)(void *user));
 void watch_destroy(struct watch *watch); /* NULL is fine */
-/* Adds a file. Since editors replace files, its folder is watched for its name. Standard input,
-   which never changes, is not watched. A change between `since_ns` and this call counts, too. */
+/* Adds a file. Since editors replace files, its folder is watched for its name; that folder may be
+   missing, come, go and be replaced. Standard input, which never changes, is not watched. A change
+   between `since_ns` and this call counts, too. */
 void watch_add(struct watch *watch, const char *path, int64_t since_ns);
 /* The time, to be taken before a file is read. Systems may date files by a clock that is some 10 ms
    behind: a change in the first 10 ms after that is not told. */
 int64_t watch_now_ns(void);
 void watch_clear(struct watch *watch); /* stops watching all files */
-/* Whether a watched file was written and closed, or replaced by another file, since the last call.
-   Does not wait. */
+/* Whether a watched file was written and closed, or replaced by another file, or its folder came or
+   went, since the last call. Does not wait. */
 bool watch_changed(struct watch *watch);
 
 #endif

@@ -45,14 +45,14 @@ static void watch_broken(struct view *view)
         size_t length = strcspn(line, ":");
         char *name = line[length] ? strstr(line + length + 1, include) : NULL;
         line[length] = '\0';
-        watch_add(view->shaders.watch, line, watch_now_ns());
+        watch_add(view->shaders.watch, line, view->shaders.saved_ns);
         if (!name)
             continue;
         name += strlen(include);
         name[strcspn(name, "\"")] = '\0';
         char *path = path_beside(line, name);
         if (path)
-            watch_add(view->shaders.watch, path, watch_now_ns());
+            watch_add(view->shaders.watch, path, view->shaders.saved_ns);
         free(path);
     }
 }
@@ -62,6 +62,7 @@ void shaders_begin(struct view *view)
     if (!settings_compiles(&view->settings))
         return;
     view->shaders.watch = watch_create(window_wake);
+    view->shaders.saved_ns = watch_now_ns();
     watch_files(view);
 }
 
@@ -252,6 +253,7 @@ void shaders_watch(struct view *view)
     struct shaders *shaders = &view->shaders;
     if (!watch_changed(shaders->watch))
         return;
+    shaders->saved_ns = watch_now_ns();
     engine_stop_reload(view->engine);
     if (is_untold(view)) {
         struct engine_reload stopped = view->status.reload;

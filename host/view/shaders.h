@@ -32,6 +32,7 @@ struct shaders {
     /* Why the current file is not shown, an error a line; "": it is shown, or may still be. */
     char errors[SESSION_ERRORS];
     uint32_t errors_reload; /* settings.shader_reload of the save that failed */
+    int64_t saved_ns;       /* watch_now_ns() at the last save, before its files were read */
     uint32_t errors_drawn;  /* number of errors drawn in the window */
     bool was_saved;         /* `before`: settings.shader_reload of the version before */
     uint32_t before;

@@ -80,6 +80,12 @@ alone: press I | compare.mode = off
 do put blue.new live/part/tint.glsl && put violet.new live/part/tint.glsl
 until shader.hash = $violet
 twice: | frame.pixels not as mended | error =
+do mv live/part live/away
+until error
+gone: | error has part/tint.glsl | frame.pixels as twice
+do mv live/away live/part
+until error = $NONE
+back: | frame.pixels as twice | shader.hash = $violet
 prices: press P | toast has the reference, which has no --shader | frame.pixels as twice
 effects: press X | toast as prices | frame.pixels as twice
 panel: press X, press Tab
@@ -89,7 +95,7 @@ height: press F3 | render has --aov height | frame.pixels not as twice | frame.i
 colour: press F3 | frame.pixels as on | frame.ids as on
 END
     check "each error is said once" test "$(grep -cE 'error: live/part/(tint.glsl:(2:11|3|4:11|5:9)|deep.glsl:2:14): ' "$OUT/stderr")" -eq 5
-    check "and nothing else" test "$(grep -c error: "$OUT/stderr")" -eq 5
+    check "and nothing else but the folder that was gone" test "$(grep -c error: "$OUT/stderr")" -eq 6
     check "each change is said" grep -q "note: a.glsl: .* pixels other .*ids equal  preview [0-9]" "$OUT/stderr"
     # On a busy machine the whole picture may be drawn before the first step is on the screen.
     case $(value step frame.divisor) in

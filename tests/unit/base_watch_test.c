@@ -1,7 +1,9 @@
 /* Tests the watching of files that are written, replaced, or left alone. */
 #include <fcntl.h>
 #include <semaphore.h>
+#include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "base/watch.h"
 #include "folder_fixture.h"
@@ -117,6 +119,55 @@ TEST_IN(more_events_than_there_is_room_for_are_a_change, folder_begin, folder_en
     put_text("a.json", "1"); /* which gets lost */
     assert_true(watch_changed(watch));
     assert_false(watch_changed(watch));
+    watch_destroy(watch);
+}
+
+/* As a version control system does when it changes to a version without the folder, and back. */
+TEST_IN(folders_that_go_and_come_are_followed, folder_begin, folder_end)
+{
+    const char *const part = "part", *const deep = "part/deep", *const file = "part/deep/a.glsl";
+    struct watch *watch = watch_create(wake);
+    watch_add(watch, in_folder(file), watch_now_ns());
+    put_text("other", "1");
+    assert_false(watch_changed(watch));
+    for (int i = 0; i < 2; ++i) {
+        assert_int_equal(mkdir(in_folder(part), 0700), 0);
+        assert_true(watch_changed(watch));
+        put_text("part/other", "1");
+        assert_false(watch_changed(watch));
+        assert_int_equal(mkdir(in_folder(deep), 0700), 0);
+        assert_true(watch_changed(watch));
+        put_text(file, "1");
+        assert_true(watch_changed(watch));
+        assert_int_equal(unlink(in_folder(file)), 0);
+        assert_false(watch_changed(watch));
+        assert_int_equal(rmdir(in_folder(deep)), 0);
+        assert_true(watch_changed(watch));
+        assert_int_equal(unlink(in_folder("part/other")), 0);
+        assert_int_equal(rmdir(in_folder(part)), 0);
+        assert_true(watch_changed(watch));
+        assert_false(watch_changed(watch));
+    }
+    watch_destroy(watch);
+}
+
+TEST_IN(folders_that_are_replaced_are_followed, folder_begin, folder_end)
+{
+    struct watch *watch = watch_create(wake);
+    assert_int_equal(mkdir(in_folder("part"), 0700), 0);
+    put_text("part/a.glsl", "1");
+    watch_add(watch, in_folder("part/a.glsl"), moment());
+    assert_false(watch_changed(watch));
+    assert_int_equal(rename(in_folder("part"), in_folder("old")), 0);
+    assert_true(watch_changed(watch));
+    put_text("old/a.glsl", "2"); /* is watched no more */
+    assert_false(watch_changed(watch));
+    assert_int_equal(mkdir(in_folder("part"), 0700), 0);
+    put_text("part/a.glsl", "3"); /* both at once */
+    assert_true(watch_changed(watch));
+    assert_false(watch_changed(watch));
+    put_text("part/a.glsl", "4");
+    assert_true(watch_changed(watch));
     watch_destroy(watch);
 }
 
