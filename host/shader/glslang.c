@@ -10,6 +10,7 @@
 #include "shader/exact.h"
 #include "shader/expand.h"
 #include "shader/fuel.h"
+#include "shader/inlining.h"
 #include "shader/link.h"
 #include "shader/messages.h"
 #include "shader/module.h"
@@ -202,19 +203,45 @@ static void check_module(struct compilation *c, struct spv_module *m)
     report(c, (struct spv_place){0, 0}, why);
 }
 
-/* Reports functions of the user's whose end can be reached without a result. */
-static void check_returns(struct compilation *c, struct spv_module *m)
+static void report_lacking(struct compilation *c, const struct spv_module *m,
+                           const uint32_t *function)
 {
+    const char *name = spv_name(m, function[2]);
+    char why[SHADER_REASON_BYTES];
+    snprintf(why, sizeof why, "function '%.*s' does not return a value on every path",
+             (int)strcspn(name, "("), name);
+    report(c, m->place, why);
+}
+
+/* Where the function is whit's own, such as the one that calls all tests, the error is about the
+   whole file. */
+static void report_large(struct compilation *c, const struct spv_module *m,
+                         const uint32_t *function)
+{
+    const char *name = spv_name(m, function[2]);
+    struct spv_place place = m->user_function ? m->place : (struct spv_place){0, 0};
+    char whose[SHADER_REASON_BYTES / 2] = "all functions together have", why[SHADER_REASON_BYTES];
+    if (m->user_function)
+        snprintf(whose, sizeof whose, "function '%.*s' has", (int)strcspn(name, "("), name);
+    snprintf(why, sizeof why,
+             "%s more than %d instructions, if a copy of what it calls stands in the place of each "
+             "call",
+             whose, INLINING_MAX);
+    report(c, place, why);
+}
+
+/* Reports functions of the user's whose end can be reached without a result, and one that becomes
+   too large by what it calls. */
+static void check_functions(struct compilation *c, struct spv_module *m)
+{
+    const uint32_t *large = inlining_find_large(m);
     for (size_t at = m->functions_at; at < m->count; at += spv_length(m->words + at)) {
         const uint32_t *words = m->words + at;
-        char why[SHADER_REASON_BYTES];
         spv_follow(m, words);
-        if (spv_op(words) != OP_FUNCTION || !m->user_function || !returns_lacks(m, words))
-            continue;
-        const char *name = spv_name(m, words[2]);
-        snprintf(why, sizeof why, "function '%.*s' does not return a value on every path",
-                 (int)strcspn(name, "("), name);
-        report(c, m->place, why);
+        if (spv_op(words) == OP_FUNCTION && m->user_function && returns_lacks(m, words))
+            report_lacking(c, m, words);
+        if (words == large)
+            report_large(c, m, words);
     }
 }
 
@@ -224,7 +251,7 @@ static struct spv_words rewrite_returns(struct compilation *c, const uint32_t *w
     struct spv_module m;
     struct spv_words out = {0};
     if (spv_read(&m, words, count, c->question->own)) {
-        check_returns(c, &m);
+        check_functions(c, &m);
         out = returns_rewrite(&m);
     }
     if (m.failed)

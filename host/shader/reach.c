@@ -59,6 +59,11 @@ static uint32_t bits_of_call(const char *name)
     return bits;
 }
 
+bool reach_traces(const char *name)
+{
+    return bits_of_call(name) & HAS(RAYS);
+}
+
 static void name_member(struct reach *reach, const uint32_t *words)
 {
     for (uint32_t i = 0; i < REACH_RECORDS; ++i) {

@@ -22,4 +22,7 @@ void reach_begin(struct reach *reach, const struct spv_module *m);
    members that it accesses, to read or to write. */
 uint32_t reach_of(const struct reach *reach, const struct spv_module *m, const uint32_t *words);
 
+/* Whether a function of whit's own, by its name as glslang writes it, traces rays. */
+bool reach_traces(const char *name);
+
 #endif

@@ -177,6 +177,33 @@ TEST_IN(a_macro_bomb_is_refused, begin, end)
     all_are_reported();
 }
 
+/* Functions that call the one before twice: 2^40 calls, or for two hooks half of what each may
+   have, and a bit. */
+TEST_IN(calls_that_double_are_refused, begin, end)
+{
+    static const struct {
+        const char *name, *hooks, *place, *reason;
+    } cases[] = {
+        {"2^40 calls", POST " return f40(color); }\n", "a.glsl:17:", "'f16' has more than 1048576"},
+        {"2^20 calls in one hook", POST " return f14(f14(f14(color))); }\n",
+         "a.glsl:42:", "'post' has more than 1048576"},
+        {"2^20 calls in two hooks",
+         POST " return f14(color); }\nvec3 miss(vec3 dir) { return f14(f14(dir)); }\n", "a.glsl",
+         ": all functions together have more than 1048576"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        FILE *file = fopen(in_folder("a.glsl"), "wb");
+        assert_non_null(file);
+        fprintf(file, "vec3 f0(vec3 c) { return c * c; }\n");
+        for (int k = 1; k <= 40; ++k)
+            fprintf(file, "vec3 f%d(vec3 c) { return f%d(c) + f%d(c + 1.0); }\n", k, k - 1, k - 1);
+        fputs(cases[i].hooks, file);
+        assert_int_equal(fclose(file), 0);
+        refuse(cases[i].name, cases[i].place, cases[i].reason);
+    }
+    all_are_reported();
+}
+
 /* ---- Files that are drawn ---- */
 
 /* Loads a file whose slider chooses the case, so that its kernels are made only once. */
