@@ -57,6 +57,31 @@ mkdir "$OUT/named" && touch "$OUT/named/bvh"
 check "a command has its options beside a file of its name" \
     test "$(cd "$OUT/named" && complete_words bvh --ru)" = --runs
 check "words that begin like options" test "$(complete_words render --up -z)" = -z
+
+# offered SHELL WORD...: prints the words that zsh or fish offers for the last word, without their help.
+offered() {
+    shell=$1
+    shift
+    (cd "$SCENES" && PATH=$(dirname "$WHIT"):$PATH && case $shell in
+        fish) HOME=$OUT fish --no-config -c 'source $argv[1]; complete -C "$argv[2]"' \
+            ../host/app/completion/whit.fish "$*" | cut -f 1 ;;
+        zsh) zsh -f -c '_describe() { local -a all=("${(@P)2}"); print -rl -- ${all%%:*} } && _files() { print -r files }
+            words=("$@") CURRENT=$# && _whit() { . ../host/app/completion/_whit } && _whit' - "$@" ;;
+    esac | tr '\n' ' ')
+}
+for shell in fish zsh; do
+    if ! command -v $shell >/dev/null; then
+        echo "SKIPPED part: no $shell"
+        continue
+    fi
+    check "$shell: commands" sh -c 'expr "$1" : ".*render " >/dev/null' - " $(offered $shell whit ren)"
+    check "$shell: options" sh -c 'expr "$1" : ".*--numerics " >/dev/null' - " $(offered $shell whit render --nu)"
+    words=$(offered $shell whit render --numerics "" | tr ' ' '\n' | sort | tr '\n' ' ')
+    check "$shell: words of an enumeration ($words)" test "${words# }" = "exact fast watertight "
+    check "$shell: words that begin like options" sh -c 'expr "$1" : ".*-z " >/dev/null' - " $(offered $shell whit render --up -z)"
+    files=$(offered $shell whit render cub)
+    check "$shell: files ($files)" test "$files" = "cube.json " -o "$files" = "files "
+done
 check "the form without a command has its line" grep -q "^FILE .options.$" "$OUT/man/whit.1"
 check "an about behind each word" test -z "$("$WHIT" --complete | grep -v "$tab.")"
 finish

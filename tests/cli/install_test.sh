@@ -11,7 +11,9 @@ check "it installs" quietly "$CMAKE" --install "$BUILD" --prefix "$OUT/prefix"
 cd "$OUT/prefix" || exit 1
 for file in bin/whit $(cd "$SOURCE/host" && ls whit/*.h | grep -v whit_program | sed 's,^,include/,') \
     share/doc/whit/LICENSE share/doc/whit/CHANGELOG.md share/doc/whit/docs/cli.md \
-    share/whit/python/whit.py share/whit/python/pytest_whit.py share/doc/whit/examples/example_check/check.yml; do
+    share/whit/python/whit.py share/whit/python/pytest_whit.py share/doc/whit/examples/example_check/check.yml \
+    share/man/man1/whit.1 share/man/man1/whit-render.1 share/bash-completion/completions/whit \
+    share/zsh/site-functions/_whit share/fish/vendor_completions.d/whit.fish; do
     check "$file is installed" test -s "$file"
 done
 build_example() {
