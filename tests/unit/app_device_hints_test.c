@@ -41,7 +41,7 @@ TEST_IN(what_lacks_is_named, folder_begin, folder_end)
         {"a processor alone", NULL, false, NULL, &lavapipe, 0, NULL, NULL, NULL},
         {"a container", NULL, true, little, &lavapipe, 2, ask_for_all, little, package},
         {"steering", NULL, true, steers, &lavapipe, 2, "\\u001b[2J\\xff", NULL, package},
-        {"with all", NULL, true, "all", &lavapipe, 1, package, NULL, NULL},
+        {"with all", NULL, true, "all", &lavapipe, 2, package, NULL, "libxext6"},
         {"no driver", "D129", false, NULL, &lavapipe, 1, "D129", "mesa-vulkan-drivers", NULL},
         {"nothing", NULL, false, NULL, NULL, 1, "lavapipe", NULL, NULL},
         {"a module alone", NULL, true, NULL, NULL, 3, NULL, NULL, NULL},

@@ -58,6 +58,9 @@ static void hint_nvidia(const char *root, const char *asked, struct device_hints
         "libnvidia-gl-%s; Debian: nvidia-vulkan-icd).",
         shows ? "An NVIDIA GPU is here and Vulkan does not list it" : "Where this is no container",
         series[0] ? series : "VERSION");
+    if (shows)
+        add(hints, "A driver that a container has from its host does not load without libXext.so.6 "
+                   "(Ubuntu, Debian: libxext6).");
 }
 
 /* Finds the first render node, and whether this user may open it. */
