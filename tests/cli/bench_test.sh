@@ -66,6 +66,13 @@ interrupted $! test -s "$OUT/longer"
 check "and no file" test ! -e "$OUT/files/never"
 check "no scratch files stay" is_empty "$OUT/tmp"
 
+mkdir "$OUT/rays"
+"$WHIT" bench rays "$CUBE" "$SCENES/54k.json" --quick --runs 99 --keep "$OUT/rays" --json "$OUT/part.json" \
+    >"$OUT/stdout" 2>"$OUT/stderr" &
+interrupted $! test -s "$OUT/rays/54k-camera.rays"
+check "rows that are whole are kept" jq -e '[.tables[0].rows[].model] | index("cube") != null' "$OUT/part.json"
+check "that others are missing is said" grep -q "^- Interrupted: rows are missing.$" "$OUT/stdout"
+
 # The work is done by whit-bench, a program beside whit or in the installed ../libexec/whit.
 mkdir -p "$OUT/alone/bin" "$OUT/alone/libexec/whit"
 cp "$WHIT" "$OUT/alone/bin/whit"

@@ -163,8 +163,10 @@ static int work(struct bench *bench)
         bench->is_cpu = bench->device_info.kind == WHIT_DEVICE_CPU;
         result = benches[bench->ask.which](bench);
     }
-    if (result == WHIT_OK && bench->ask.json)
-        result = write_json(bench);
+    if (bench->ask.json && (result == WHIT_OK || json_array_size(bench->tables) > 0)) {
+        whit_result written = write_json(bench);
+        result = result == WHIT_OK ? written : result;
+    }
     json_decref(bench->tables);
     whit_device_destroy(bench->device);
     if (!bench->ask.keep)

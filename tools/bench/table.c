@@ -227,8 +227,14 @@ whit_result table_end(struct table *table, const char *title, whit_result result
 {
     cli_progress_finish(&table->bench->progress);
     table->title = title;
-    if (result == WHIT_OK)
-        result = table->is_short ? WHIT_ERROR_MEMORY : publish(table);
+    if (table->is_short)
+        result = result == WHIT_OK ? WHIT_ERROR_MEMORY : result;
+    else if (result == WHIT_OK)
+        result = publish(table);
+    else if (cli_cancel && table->line_count > 1) {
+        table_say(table, "Interrupted: rows are missing.");
+        (void)publish(table);
+    }
     json_decref(table->object);
     free(table->lines);
     free(table->figures);

@@ -56,8 +56,9 @@ void table_goal(struct table *table, const char *key, const char *name, double v
 void table_say(struct table *table, const char *format, ...) WHIT_PRINTF(2, 3);
 /* Notes a peer or a row that is left out here, and why. */
 void table_leave_out(struct table *table, const char *name, const char *why);
-/* Prints the table unless `result` is an error, and writes the plot of --plot. Gives `result`, or a
-   new error. */
+/* Prints the table unless `result` is an error, and writes the plot of --plot. Where the user has
+   stopped the bench, it does so with the rows so far, if there are any. Gives `result`, or a new
+   error. */
 WHIT_CHECK whit_result table_end(struct table *table, const char *title, whit_result result);
 
 /* The figure of `a` as a multiple of `b`, run by run; NAN, without a goal, where one has no
