@@ -72,7 +72,8 @@ enum { BUILD_DEPTH_OF_MEDIANS = 96 };
 /* The nodes of a growing tree. Pair slot s is nodes 2 + 2 s and 3 + 2 s. */
 struct build_output {
     struct gpu_bvh_node *nodes;
-    uint32_t *slots; /* of each pair slot: 1 if in use; then its number in the finished tree */
+    uint32_t *slots; /* of each pair slot: the depth of its nodes, 0 if it is not in use; then its
+                        number in the finished tree */
 };
 
 /* The functions that each builder has of its own. Several threads call them at once, for ranges
@@ -149,9 +150,8 @@ static inline struct build_bounds build_bounds_empty(void)
     return (struct build_bounds){build_box_empty(), build_box_empty()};
 }
 
-static inline void build_bounds_add(struct build_bounds *b, const struct build_record *record)
+static inline void build_bounds_add(struct build_bounds *b, struct build_box box)
 {
-    struct build_box box = build_record_box(record);
     f4 centroid = build_centroid(box);
     b->box = build_box_unite(b->box, box);
     b->centroids = build_box_unite(b->centroids, (struct build_box){centroid, centroid});

@@ -1,4 +1,4 @@
-/* Computes the axis bits and figures of a finished tree, whichever builder made it. */
+/* Computes the axis bits and the SAH cost of a finished tree, whichever builder made it. */
 #include <math.h>
 
 #include "base/threads.h"
@@ -31,16 +31,6 @@ static void node_tally(const struct gpu_bvh_node *node, struct tally *tally)
         tally->area_inner += bvh_half_area(node);
     else
         tally->area_leaves += bvh_half_area(node) * count;
-}
-
-/* The depth of the subtree below `node`, 0 for a leaf. Recurses at most BVH_DEPTH_MAX deep. */
-static uint32_t subtree_depth(const struct gpu_bvh_node *nodes, uint32_t node)
-{
-    if (bvh_count(&nodes[node]) > 0)
-        return 0;
-    uint32_t a = subtree_depth(nodes, nodes[node].first);
-    uint32_t b = subtree_depth(nodes, nodes[node].first + 1);
-    return 1 + (a > b ? a : b);
 }
 
 /* Each chunk of nodes has its own sums. They are added in the order of the chunks, whichever
@@ -91,5 +81,4 @@ void bvh_complete(struct bvh *bvh, uint32_t thread_count)
     struct tally tally = nodes_complete(bvh, thread_count);
     double root = bvh->node_count > 0 ? bvh_half_area(&bvh->nodes[0]) : 0.0;
     bvh->sah_cost = root > 0.0 ? (tally.area_inner + tally.area_leaves) / root : 0.0;
-    bvh->depth = bvh->node_count > 0 ? subtree_depth(bvh->nodes, 0) : 0;
 }

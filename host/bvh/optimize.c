@@ -255,13 +255,14 @@ static double inner_area(const struct gpu_bvh_node *nodes, uint32_t node_count)
     return sum;
 }
 
-/* Whether no path has more than `left` inner nodes. */
-static bool is_within_depth(const struct gpu_bvh_node *nodes, uint32_t node, uint32_t left)
+/* The depth of the subtree below `node`, 0 for a leaf; above `max` where it is more than that. */
+static uint32_t subtree_depth(const struct gpu_bvh_node *nodes, uint32_t node, uint32_t max)
 {
-    if (nodes[node].count > 0)
-        return true;
-    return left > 0 && is_within_depth(nodes, nodes[node].first, left - 1) &&
-           is_within_depth(nodes, nodes[node].first + 1, left - 1);
+    if (nodes[node].count > 0 || max == 0)
+        return nodes[node].count == 0;
+    uint32_t a = subtree_depth(nodes, nodes[node].first, max - 1);
+    uint32_t b = subtree_depth(nodes, nodes[node].first + 1, max - 1);
+    return 1 + (a > b ? a : b);
 }
 
 /* Writes the tree to `bvh`: pairs of nodes in depth-first order, primitives in the order of the
@@ -314,7 +315,9 @@ whit_result bvh_optimize(const whit_log *log, uint32_t thread_count, struct bvh 
             break;
     }
     bool better = inner_area(o.nodes, o.node_count) < before;
-    if (better && is_within_depth(o.nodes, 0, BVH_DEPTH_MAX)) {
+    uint32_t depth = better ? subtree_depth(o.nodes, 0, BVH_DEPTH_MAX) : 0;
+    if (better && depth <= BVH_DEPTH_MAX) {
+        bvh->depth = depth;
         emit(&o, bvh, order);
         uint32_t *old = bvh->order;
         bvh->order = order;

@@ -31,19 +31,19 @@ static void make_chunk(void *user, uint32_t index)
     uint32_t begin = index * RECORD_CHUNK;
     uint32_t end = context->count - begin > RECORD_CHUNK ? begin + RECORD_CHUNK : context->count;
     struct record_chunk chunk = {build_bounds_empty(), false};
+    i4 good = {-1, -1, -1, -1};
     for (uint32_t i = begin; i < end; ++i) {
         const struct bvh_box *box = &context->boxes[i];
         struct build_record *record = &context->records[i];
-        chunk.bad |= !bvh_box_is_sane(box->lo, box->hi);
-        for (int a = 0; a < 3; ++a) {
-            /* + 0 turns -0 into +0, so that bounds do not depend on the order of their parts. */
-            record->lo[a] = box->lo[a] + 0.0f;
-            record->hi[a] = box->hi[a] + 0.0f;
-        }
-        record->primitive = i;
-        record->flags = 0;
-        build_bounds_add(&chunk.bounds, record);
+        /* + 0 turns -0 into +0, so that bounds do not depend on the order of their parts. */
+        struct build_box own = {f4_three(box->lo) + 0.0f, f4_three(box->hi) + 0.0f};
+        good &= (own.lo >= -FLT_MAX) & (own.lo <= own.hi) & (own.hi <= FLT_MAX);
+        *record = (struct build_record){.primitive = i};
+        memcpy(record->lo, &own.lo, sizeof record->lo);
+        memcpy(record->hi, &own.hi, sizeof record->hi);
+        build_bounds_add(&chunk.bounds, own);
     }
+    chunk.bad = (good[0] & good[1] & good[2]) == 0;
     context->chunks[index] = chunk;
 }
 
@@ -97,7 +97,7 @@ void records_bound(const struct build_record *records, uint32_t count, struct bu
     halves->count[1] = count - left;
     halves->bounds[0] = halves->bounds[1] = build_bounds_empty();
     for (uint32_t i = 0; i < count; ++i)
-        build_bounds_add(&halves->bounds[i >= left], &records[i]);
+        build_bounds_add(&halves->bounds[i >= left], build_record_box(&records[i]));
 }
 
 /* ---- Builders ---- */

@@ -281,12 +281,12 @@ bool spatial_apply(struct build_record *records, const struct build_range *range
         if (side == SIDE_BOTH) {
             records[i] = low;
             records[end++] = high;
-            build_bounds_add(&bounds[1], &high);
+            build_bounds_add(&bounds[1], build_record_box(&high));
         }
         if (side & SIDE_LEFT) {
-            build_bounds_add(&bounds[0], &records[i++]);
+            build_bounds_add(&bounds[0], build_record_box(&records[i++]));
         } else {
-            build_bounds_add(&bounds[1], &records[i]);
+            build_bounds_add(&bounds[1], build_record_box(&records[i]));
             build_records_swap(&records[i], &records[--j]);
         }
     }

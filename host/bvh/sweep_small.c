@@ -217,7 +217,7 @@ void small_grow(struct small *small, const struct builder *builder,
         struct gpu_bvh_node *node = &output->nodes[r.node];
         if (r.count > 1 && choose(small, &r, builder->params, &cut)) {
             build_node_write(node, r.box, 2 + 2 * r.pair, 0);
-            output->slots[r.pair] = 1;
+            output->slots[r.pair] = r.depth + 1;
             if (r.count > 2) {
                 part(small, &r, &cut, halves);
                 stack[top++] = halves[1];

@@ -76,7 +76,7 @@ static bool range_split(struct build *build, const struct build_range *range, ui
     if (choice == BUILD_NONE)
         builder->halve(builder, range, &nodes[child], &split);
     build_node_write(node, range->bounds.box, child, 0);
-    build->output.slots[range->pair] = 1;
+    build->output.slots[range->pair] = range->depth + 1;
     halves_place(build, range, &split, halves);
     return true;
 }
@@ -195,30 +195,30 @@ static void node_link(struct gpu_bvh_node *node, const uint32_t *slots)
         node->first = 2 + 2 * slots[(node->first - 2) / 2];
 }
 
-/* Removes unused pair slots. Slots are in depth-first order, so that pairs only move to lower ones.
-   Returns the number of nodes. */
-static uint32_t squeeze(const struct build_output *output, uint32_t slot_count)
+/* Removes unused pair slots, and finds the depth. Slots are in depth-first order, so that pairs
+   only move to lower ones. out->order holds the slots in use meanwhile. */
+static void squeeze(const struct build_output *output, uint32_t slot_count, struct bvh *out)
 {
     struct gpu_bvh_node *nodes = output->nodes;
-    uint32_t pair_count = 0, *slots = output->slots;
+    uint32_t pair_count = 0, *slots = output->slots, *used = out->order;
     for (uint32_t i = 0; i < slot_count; ++i) {
-        uint32_t used = slots[i];
-        slots[i] = used ? pair_count : UINT32_MAX;
-        pair_count += used;
+        uint32_t depth = slots[i];
+        out->depth = depth > out->depth ? depth : out->depth;
+        used[pair_count] = i;
+        slots[i] = pair_count;
+        pair_count += depth > 0;
     }
     node_link(&nodes[0], slots);
     memset(&nodes[1], 0, sizeof nodes[1]);
-    for (uint32_t i = 0; i < slot_count; ++i) {
-        if (slots[i] == UINT32_MAX)
-            continue;
-        struct gpu_bvh_node *pair = &nodes[2 + 2 * slots[i]];
-        struct gpu_bvh_node first = nodes[2 + 2 * i], second = nodes[3 + 2 * i];
+    for (uint32_t p = 0; p < pair_count; ++p) {
+        struct gpu_bvh_node *pair = &nodes[2 + 2 * p], *from = &nodes[2 + 2 * used[p]];
+        struct gpu_bvh_node first = from[0], second = from[1];
         node_link(&first, slots);
         node_link(&second, slots);
         pair[0] = first;
         pair[1] = second;
     }
-    return 2 + 2 * pair_count;
+    out->node_count = 2 + 2 * pair_count;
 }
 
 void *build_alloc_lines(size_t count, size_t element_bytes)
@@ -250,7 +250,7 @@ whit_result topdown_grow(const whit_log *log, const struct builder *builder,
     whit_result result = grow_alloc(log, &build, out);
     if (result == WHIT_OK) {
         build_tree(&build, bounds);
-        out->node_count = squeeze(&build.output, count + spare - 1);
+        squeeze(&build.output, count + spare - 1, out);
     }
     free(build.output.slots);
     free(build.queue.ranges);

@@ -206,7 +206,7 @@ TEST(medians_separate)
    leave room for; the boxes are points of a line in an order that pays to change. */
 static void chain_make(uint32_t chain, struct bvh *bvh, struct bvh_box *boxes)
 {
-    *bvh = (struct bvh){.primitive_count = chain, .reference_count = chain};
+    *bvh = (struct bvh){.primitive_count = chain, .reference_count = chain, .depth = chain - 1};
     bvh->node_count = 2 * chain;
     bvh->nodes = aligned_alloc(64, 2 * (size_t)chain * sizeof *bvh->nodes);
     bvh->order = calloc(chain, sizeof *bvh->order);
@@ -238,7 +238,6 @@ TEST(optimizing_keeps_the_limit_of_depth)
         own_bvh bvh = {0};
         struct bvh_box boxes[BVH_DEPTH_MAX + 1];
         chain_make(depth + 1, &bvh, boxes);
-        assert_int_equal(bvh.depth, depth);
         double before = bvh.sah_cost;
         assert_int_equal(bvh_optimize(&silent, 1, &bvh), WHIT_OK);
         assert_int_equal(bvh_validate(&silent, &bvh, boxes, 1), WHIT_OK);

@@ -200,6 +200,7 @@ static void split_tree_init(struct split_tree *tree)
     };
     tree->bvh.nodes = tree->nodes;
     tree->bvh.order = tree->order;
+    tree->bvh.depth = 1;
     bvh_complete(&tree->bvh, 1);
 }
 
