@@ -111,5 +111,6 @@ refuse 2 "devices with an argument" "too many" devices "$CUBE"
 # In the same environment commands that need a device fail.
 refuse 3 "no driver: render" "Vulkan" render "$CUBE" -o "$P"
 refuse 3 "no driver: devices" "Vulkan" devices
+check "no empty line comes first" test -n "$(head -n 1 "$OUT/stdout")"
 check "no file was left" is_empty "$OUT/pictures"
 finish

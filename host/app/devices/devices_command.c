@@ -113,7 +113,7 @@ static int print_text(const whit_device_info *infos, uint32_t count,
     if (count > 0)
         puts("\n* is what `--device auto` takes.");
     for (uint32_t i = 0; i < hints->count; ++i)
-        printf("%s%s\n", i == 0 ? "\n" : "", hints->list[i]);
+        printf("%s%s\n", i == 0 && count > 0 ? "\n" : "", hints->list[i]);
     cache_print();
     return cli_finish_stdout(EXIT_FINE);
 }
