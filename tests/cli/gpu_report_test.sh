@@ -12,6 +12,10 @@ TEST_DRIVER=${VK_DRIVER_FILES:-}
 REPORT=$OUT/gpu-report
 check "the folder is made" env -u WHIT_VALIDATION -u WHIT_POISON -u LD_PRELOAD "$ROOT/tools/gpu-report" "$REPORT" >"$OUT/made.txt" 2>&1
 cat "$OUT/made.txt" | tail -n 3
+glibc=$(objdump -T "$ROOT/build/report/whit" | grep -o 'GLIBC_[0-9.]*' | sort -uV | tail -n 1)
+check "no library needs a later glibc than whit ($glibc)" test "GLIBC_$(cut -d ' ' -f 1 "$REPORT/glibc.txt")" = "$glibc"
+xzcat "$REPORT/programs.tar.xz" | tar -t >"$OUT/programs"
+check "it has what a container may lack of NVIDIA's driver" grep -q '^lib/libXext.so.6$' "$OUT/programs"
 check "at most 60 MiB" test "$(du -sk "$REPORT" | cut -f 1)" -le $((60 * 1024))
 
 BARE=$OUT/bare
