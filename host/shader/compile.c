@@ -251,17 +251,25 @@ static void add_error_at(const struct place *place, const struct shader_file *fi
                      "%s", reason);
 }
 
+/* Reports a brace without its other one in place of an error that follows from it, where there is
+   one. */
+static bool add_brace_error(const struct place *place, const char *reason)
+{
+    uint32_t file, line;
+    char text[SHADER_REASON_BYTES + 64];
+    if (!place->text || !find_open_brace(place->text, &file, &line))
+        return false;
+    snprintf(text, sizeof text, "a brace without its other one: %s", reason);
+    add_error_at(place, &place->text->files[file], line, text);
+    return true;
+}
+
 static void add_own_error(const struct place *place, const struct glslang_error *error,
                           const char *reason)
 {
     char name[SHADER_FILE_BYTES];
-    uint32_t file, line;
-    if (place->text && find_open_brace(place->text, &file, &line)) {
-        char text[SHADER_REASON_BYTES + 64];
-        snprintf(text, sizeof text, "a brace without its other one: %s", reason);
-        add_error_at(place, &place->text->files[file], line, text);
+    if (add_brace_error(place, reason))
         return;
-    }
     const struct shader_stages *stages = place->request->stages;
     uint32_t index = stages && error->file >= stages->count
                          ? shader_stages_find(stages, place->request->kernel)
@@ -288,13 +296,14 @@ static uint32_t count_lines(const struct shader_file *file)
 }
 
 /* An error about something unclosed may have a line behind the file's end: it goes to the last
-   line. */
+   line. The beginning of a function within another one means that a brace is missing before. */
 static void add_user_error(const struct place *place, const struct glslang_error *error,
                            const char *reason)
 {
     const struct shader_file *file = &place->text->files[error->file];
     uint32_t last = count_lines(file), line = error->line < last ? error->line : last;
-    add_error_at(place, file, line, reason);
+    if (!strstr(reason, "unexpected '{'") || !add_brace_error(place, reason))
+        add_error_at(place, file, line, reason);
 }
 
 /* Adds the errors of an answer. The child that wrote it is not trusted. */

@@ -251,6 +251,8 @@ static const struct {
     {"float f(float x, int n) {\n  dvec2 v = dvec2(1.0);\n  return float(v.x);\n}\n", 2,
      "no double"},
     {"float f(float x, int n) {\n  while (true) {\n  return x;\n}\n", 1, "brace"},
+    {"float g(float x) {\n  return x;\n\nfloat f(float x, int n) {\n  return g(x);\n}\n", 1,
+     "brace"},
     {FINE "}\n", 2, ""},
     {"float f(float x) {\n return x;\n}\n", 0, "whit's own text"},
     {"float f(float x, int n) {\n  return dFdx(x);\n}\n", 2,
@@ -377,6 +379,12 @@ TEST_IN(lines_are_right_through_two_levels, compiler_begin, compiler_end)
     assert_non_null(strstr(messages.text, "lib/c.glsl:4:14: 'missing_c'"));
     assert_non_null(strstr(messages.text, "lib/b.glsl:3:27: 'missing_b'"));
     assert_non_null(strstr(messages.text, "a.glsl:4:11: 'missing_a'"));
+    static const char *const open[] = {
+        "a.glsl", "#include \"b.glsl\"\nfloat f(float x, int n)\n{\n return g(x);\n}\n", "b.glsl",
+        "\nfloat g(float x) {\n return x;\n", NULL};
+    assert_int_equal(compile_in(test_kernel, open, false, &code), WHIT_ERROR_INPUT);
+    assert_int_equal(errors.count, 1);
+    assert_non_null(strstr(messages.text, "b.glsl:2:18: a brace without its other one"));
 }
 
 TEST_IN(a_line_has_one_error_and_a_text_has_many, compiler_begin, compiler_end)
