@@ -234,6 +234,8 @@ void whit_shader_get_info(const whit_shader *shader, whit_shader_info *info)
     for (uint32_t i = 0; i < HOOK_KERNEL_COUNT; ++i) {
         info->kernel_count += shader->codes[i].words != NULL;
         info->instructions += shader->codes[i].instructions;
+        info->traces = info->traces ||
+                       (i != HOOK_KERNEL_TEST && (shader->codes[i].reaches & SHADER_REACHES_RAYS));
     }
 }
 

@@ -4,7 +4,7 @@
 
 #define HAS(name) SHADER_REACHES_##name
 
-/* The colour of glass that a shadow ray passes is computed from these. */
+/* What a material lets through, also for shadow rays, is computed from these. */
 #define FILTERS   (HAS(TEXTURES) | HAS(VERTEX_COLORS) | HAS(METAL_ROUGH))
 
 /* Functions of hook/interface.glsl, by the start of their names as glslang writes them, and what
@@ -17,7 +17,7 @@ static const struct {
     {"light_points(", HAS(LIGHTS)},
     {"lit_by(", HAS(ALL)},
     {"whit_shade(", HAS(ALL)},
-    {"whit_scatter(", HAS(ALL)},
+    {"whit_scatter(", FILTERS | HAS(SHARES) | HAS(NORMALS)},
     {"visible(", HAS(SHADOWS) | HAS(RAYS) | FILTERS},
     {"trace(", HAS(RAYS)},
 };

@@ -54,6 +54,8 @@ for hook in camera surface shade scatter miss post aov intersect; do # the other
     expect 0 "new $hook" shader new $hook
     cp "$OUT/stdout" $hook.glsl
 done
+expect 0 "what traces" shader shade.glsl
+check "says so" grep -qx 'shade.glsl: 1 file, functions shade; they trace rays' "$OUT/stdout"
 cat aov.glsl intersect.glsl >more.glsl
 expect 0 "the new aov and the new intersect compile" shader more.glsl
 expect 2 "new nothing" shader new nothing
@@ -91,6 +93,7 @@ expect 0 "beside the colour" render "$CUBE" --size 16x12 --quiet --shader all.gl
 check "it is in both files" test "$(grep -ac facing.R both.exr) $(grep -ac facing.R aov.exr)" = "1 0"
 expect 2 "--aov without --shader" render "$CUBE" --aov facing -o aov.exr
 check "its fuel" test "$(jq .fuel all.json)" = 20000
+check "it traces no rays" test "$(jq .traces all.json)" = false
 expect 0 "dump" shader all.glsl --dump spirv
 sed -n '/^  --[as]/s/ *$//p' "$OUT/stdout" >told
 cat >want <<'END'
@@ -133,6 +136,7 @@ void rays(uint seed)
 }
 END
     expect 0 "tests" shader tests.glsl
+    check "the file's functions trace no rays, but for tests" sh -c '! grep -q "trace rays" "$1"' - "$OUT/stdout"
     check "passes are told" grep -q "test fine: passed, 3 checks of 4096 seeds" "$OUT/stdout"
     # Arguments of calls do not count as variables of a test, but arrays of all tests do.
     many() { # DECLARATION: a hundred tests of ten checks, each with it

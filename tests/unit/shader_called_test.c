@@ -52,6 +52,9 @@ TEST(what_is_not_asked_for_is_not_compiled)
          "#define CALL other\n"
          "vec3 shade(Surface s, Optics o, vec3 to_eye) { return CALL(s, o, to_eye); }\n",
          true, true, 0},
+        {"void scatter(Surface s, Optics o, inout Rays rays) { whit_scatter(s, o, rays); }\n"
+         "vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ns; }\n",
+         false, false, 0},
         {"//@ aov lit\nvec4 lit(Surface s) { return vec4(visible(s, s.ns, 1.0), 1.0); }\n"
          "vec3 shade(Surface s, Optics o, vec3 to_eye) { return s.ns; }\n",
          false, true, 0},
@@ -291,12 +294,13 @@ TEST_BY_TURNS(another_post_needs_no_rays, 0, 2)
 /* The same with other functions in the file, whose ids in SPIR-V change with post(). */
 TEST_BY_TURNS(another_post_beside_other_functions_needs_no_rays, 1, 2)
 {
+#define SCATTER "void scatter(Surface s, Optics o, inout Rays r) { whit_scatter(s, o, r); }\n"
     static const struct version versions[] = {
-        {POST("c") SHADE "s.ns * sin(s.p.x * 3.0) + 0.125; }\n", true},
-        {POST("c.bgr * 0.75 + length(c) * vec3(0.5, 0.0, 0.25)") SHADE
+        {POST("c") SCATTER SHADE "s.ns * sin(s.p.x * 3.0) + 0.125; }\n", true},
+        {POST("c.bgr * 0.75 + length(c) * vec3(0.5, 0.0, 0.25)") SCATTER SHADE
          "s.ns * sin(s.p.x * 3.0) + 0.125; }\n",
          false},
-        {POST("c.brg") SHADE "s.ns * sin(s.p.x * 5.0) + 0.125; }\n", true},
+        {POST("c.brg") SCATTER SHADE "s.ns * sin(s.p.x * 5.0) + 0.125; }\n", true},
     };
     draw_versions(versions, sizeof versions / sizeof *versions);
 }

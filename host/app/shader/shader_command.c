@@ -94,7 +94,7 @@ static void print_text(const whit_shader *shader, const char *path)
            info.file_count == 1 ? "" : "s");
     for (uint32_t i = 0; i < name_count; ++i)
         printf("%s %s", i ? "," : "", names[i]);
-    printf("\n");
+    printf("%s\n", info.traces ? "; they trace rays" : "");
     for (uint32_t i = 0; i < info.aov_count; ++i)
         printf("  --aov %s\n", info.aovs[i]);
     for (uint32_t i = 0; i < info.slider_count; ++i) {
@@ -170,6 +170,7 @@ static int print_json(const whit_shader *shader, const struct attempt *attempt)
         put_slider(document_entry(sliders), &info.sliders[i]);
     document_put(object, "kernels", list_kernels(shader));
     document_count(object, "instructions", info.instructions);
+    document_flag(object, "traces", info.traces);
     document_flag(object, "trusted", info.fuel == 0);
     document_count(object, "fuel", info.fuel);
     document_hash(object, "hash", info.hash);
