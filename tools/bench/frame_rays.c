@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "base/vec.h"
 #include "bench/frame_rays.h"
 
 static const char closest_name[] = "closest.rays", shadow_name[] = "shadow.rays";
@@ -25,11 +26,10 @@ static whit_ray ray_of(const struct frame *frame, const whit_probe_ray *from)
     if (shadow) {
         whit_light_info light;
         whit_scene_get_light(frame->loaded.scene, from->light, &light);
-        const double *p = light.position;
         const float *o = from->ray.origin;
         length = light.kind == WHIT_LIGHT_DIRECTIONAL
                      ? 2.0 * size
-                     : hypot(hypot(p[0] - (double)o[0], p[1] - (double)o[1]), p[2] - (double)o[2]);
+                     : double3_distance(light.position, (const double[]){o[0], o[1], o[2]});
     }
     whit_ray ray = {.t_min = from->kind == WHIT_RAY_PRIMARY ? 0.0f : 1e-4f,
                     .t_max = shadow ? 1.0f - 1e-4f : INFINITY};
