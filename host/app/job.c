@@ -139,12 +139,18 @@ whit_result job_load(struct job *job)
 
 void job_print_notes(const struct job *job, bool all)
 {
+    if (!job->settings.quiet)
+        job_print_scene_notes(job->scene, all);
+}
+
+void job_print_scene_notes(const whit_scene *scene, bool all)
+{
     whit_scene_info info;
     uint32_t wanted = 0;
-    whit_scene_get_info(job->scene, &info);
-    for (uint32_t i = 0; !job->settings.quiet && i < info.note_count; ++i) {
+    whit_scene_get_info(scene, &info);
+    for (uint32_t i = 0; i < info.note_count; ++i) {
         whit_note_info note;
-        whit_scene_get_note(job->scene, i, &note);
+        whit_scene_get_note(scene, i, &note);
         if ((!all && !note.warning) || ++wanted > NOTES_SHOWN)
             continue;
         if (note.warning)

@@ -53,8 +53,10 @@ whit_result job_build(struct job *job);
 whit_result job_open_device(struct job *job);
 /* WHIT_OK unless the user has stopped the program or its time limit has passed. */
 whit_result job_still_wanted(void);
-/* Prints the notes of the scene: warnings, and with `all` also notes on what whit added. */
+/* Prints the notes of the scene: warnings, and with `all` also notes on what whit added. The first
+   function prints nothing where --quiet is given. */
 void job_print_notes(const struct job *job, bool all);
+void job_print_scene_notes(const whit_scene *scene, bool all);
 /* The information on a shader; zeroed for NULL. */
 whit_shader_info job_shader_info(const whit_shader *shader);
 /* Writes the names of the functions that a shader replaces; gives their number. */

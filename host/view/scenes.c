@@ -329,6 +329,9 @@ void scenes_show(struct view *view)
     snprintf(title, sizeof title, "%s - whit", path_name(shown->scene));
     window_set_title(view->window, title);
     watch_scene(view);
+    if (view->params->tell && strcmp(view->told, shown->scene) != 0)
+        view->params->tell(view->scene->scene);
+    snprintf(view->told, sizeof view->told, "%s", shown->scene);
     if (settings_same_scene(shown, &view->settings))
         scenes_forget(view);
 }

@@ -31,6 +31,8 @@ struct view_params {
     const char *hint;   /* message to begin with, or NULL */
     bool remember;      /* remember cameras from one run to the next */
     const volatile bool *cancel;
+    /* Tells of a scene when its file is first shown; NULL: nothing is told. */
+    void (*tell)(const whit_scene *scene);
     /* Saves a picture; logs the reason of an error. */
     whit_result (*save)(const struct view_shot *shot, const char *path, const whit_log *log);
     /* Reads a file of settings; scene and files of *settings stay. `message` gets the reason of an

@@ -108,6 +108,7 @@ struct view {
     struct watch *watch;            /* watches the shown scene's files; NULL: not possible */
     struct watch *watch_asked;      /* watches `asked` until it is shown; NULL: not possible */
     char asked[SETTING_PATH_BYTES]; /* the scene that was last opened, or read again */
+    char told[SETTING_PATH_BYTES];  /* the scene that view_params.tell was called for last */
     char refused[ENGINE_MESSAGE];   /* why `asked` is not shown; "": it is, or may still be */
     /* The last folder of status.refused that the user has answered about. */
     char answered[SETTING_PATH_BYTES];

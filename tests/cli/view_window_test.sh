@@ -184,6 +184,14 @@ expect 0 "--frames" view "$CUBE" --size 96x64 --frames 3
 check "--frames: nothing to complain of" test ! -s "$OUT/stderr"
 refuse 2 "--frames 0" "1" view "$CUBE" --frames 0
 
+# What was added to a model is said once, also if the scene is made again for another setting.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$OUT/dark.obj"
+printf 'still\npress Tab\nstill\nchoose up\nstill\nchoose z\nstill\n' >"$OUT/turned"
+expect 0 "a model without light" view "$OUT/dark.obj" --size 640x480 --replay "$OUT/turned"
+check "its light is said" test "$(grep -c "^whit: note: no light in the file: a directional one was added" "$OUT/stderr")" -eq 1
+expect 0 "the same quietly" view "$OUT/dark.obj" --size 96x64 --frames 1 --quiet
+check "nothing is said" test ! -s "$OUT/stderr"
+
 # ---- No window ----
 
 # A display that goes away while the window is open.

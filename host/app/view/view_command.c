@@ -114,6 +114,12 @@ static whit_result save_shot(const struct view_shot *shot, const char *path, con
     return result;
 }
 
+/* view_params.tell */
+static void tell(const whit_scene *scene)
+{
+    job_print_scene_notes(scene, true);
+}
+
 /* ---- The command ---- */
 
 /* Finds the scene that opens when none is given: installed beside the program, or in the checkout
@@ -149,6 +155,7 @@ static int work(struct job *job, struct view_params *view)
     }
     view->settings = job->settings;
     view->cancel = &cli_cancel;
+    view->tell = job->settings.quiet ? NULL : tell;
     view->save = save_shot;
     view->load_state = load_state;
     view->load_user = job;
