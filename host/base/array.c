@@ -63,16 +63,24 @@ void *array_copy(const void *data, size_t count, size_t element_bytes)
     return copy ? memcpy(copy, data, count * element_bytes) : NULL;
 }
 
-void *array_alloc_aligned(size_t count, size_t element_bytes)
+/* A large page is given only where all of it is inside a block. */
+void *array_alloc_lines(size_t count, size_t element_bytes)
 {
     size_t bytes;
     if (!product(count, element_bytes, &bytes))
         return NULL;
     bytes = (bytes + 63) & ~(size_t)63;
-    void *memory = expect_much(aligned_alloc(64, bytes), bytes);
-    if (memory)
-        memset(memory, 0, bytes);
+    bool large = bytes >= LARGE_PAGE_BYTES;
+    void *memory = aligned_alloc(large ? LARGE_PAGE_BYTES : 64, bytes);
+    if (memory && large)
+        platform_expect_much(memory, bytes);
     return memory;
+}
+
+void *array_alloc_aligned(size_t count, size_t element_bytes)
+{
+    void *memory = array_alloc_lines(count, element_bytes);
+    return memory ? memset(memory, 0, (count * element_bytes + 63) & ~(size_t)63) : NULL;
 }
 
 char *string_copy(const char *text)

@@ -23,9 +23,11 @@ void *array_alloc(size_t count, size_t element_bytes);
 void *array_alloc_zeroed(size_t count, size_t element_bytes);
 /* A copy of `count` elements; NULL gives NULL. */
 void *array_copy(const void *data, size_t count, size_t element_bytes);
-/* 64-byte aligned and zeroed; release with free(). */
-void *array_alloc_aligned(size_t count, size_t element_bytes);
-char *string_copy(const char *text); /* NULL gives NULL */
+/* Aligned to cache lines of 64 bytes, or to large pages, for which large arrays ask; release with
+   free(). The first is not zeroed, so that parts that stay unused take no memory. */
+void *array_alloc_lines(size_t count, size_t element_bytes);
+void *array_alloc_aligned(size_t count, size_t element_bytes); /* zeroed */
+char *string_copy(const char *text);                           /* NULL gives NULL */
 char *string_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 #endif

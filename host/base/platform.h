@@ -17,6 +17,7 @@ void platform_share_heaps(void);
    allocate may wait. */
 void platform_trim_heaps(void);
 
+enum { LARGE_PAGE_BYTES = 2 << 20 };
 /* Asks for large pages for memory that will all be written: small pages take longer to get than to
    fill. */
 void platform_expect_much(void *data, size_t size_bytes);

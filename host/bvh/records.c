@@ -2,6 +2,7 @@
    nothing. */
 #include <stdlib.h>
 
+#include "base/array.h"
 #include "base/threads.h"
 #include "bvh/records.h"
 #include "bvh/split_binned.h"
@@ -67,9 +68,9 @@ whit_result records_make(const whit_log *log, const struct bvh_box *boxes, uint3
     uint32_t chunk_count = (count - 1) / RECORD_CHUNK + 1;
     struct record_context context = {
         .boxes = boxes,
-        .records = build_alloc_lines((size_t)count + spare, sizeof **records),
+        .records = array_alloc_lines((size_t)count + spare, sizeof **records),
         .count = count,
-        .chunks = build_alloc_lines(chunk_count, sizeof *context.chunks),
+        .chunks = array_alloc_lines(chunk_count, sizeof *context.chunks),
     };
     whit_result result = WHIT_OK;
     if (!context.records || !context.chunks) {

@@ -221,18 +221,13 @@ static void squeeze(const struct build_output *output, uint32_t slot_count, stru
     out->node_count = 2 + 2 * pair_count;
 }
 
-void *build_alloc_lines(size_t count, size_t element_bytes)
-{
-    return aligned_alloc(64, (count * element_bytes + 63) & ~(size_t)63);
-}
-
 static whit_result grow_alloc(const whit_log *log, struct build *build, struct bvh *out)
 {
     size_t room = (size_t)build->count + build->spare;
     build->output.slots = array_alloc_zeroed(room, sizeof *build->output.slots);
     build->queue.ranges =
-        build_alloc_lines(build->thread_count > 1 ? TASKS_MAX : 1, sizeof *build->queue.ranges);
-    build->output.nodes = out->nodes = build_alloc_lines(2 * room, sizeof *out->nodes);
+        array_alloc_lines(build->thread_count > 1 ? TASKS_MAX : 1, sizeof *build->queue.ranges);
+    build->output.nodes = out->nodes = array_alloc_lines(2 * room, sizeof *out->nodes);
     out->order = array_alloc(room, sizeof *out->order);
     if (build->output.slots && build->queue.ranges && out->nodes && out->order)
         return WHIT_OK;

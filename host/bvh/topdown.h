@@ -12,8 +12,4 @@ whit_result topdown_grow(const whit_log *log, const struct builder *builder,
                          const struct build_bounds *bounds, uint32_t count, uint32_t spare,
                          struct bvh *out);
 
-/* Allocates memory aligned to cache lines of 64 bytes; not zeroed, so that slots that stay unused
-   take no memory. */
-void *build_alloc_lines(size_t count, size_t element_bytes);
-
 #endif

@@ -11,7 +11,7 @@
 #include "device/commands.h"
 #include "device/vulkan.h"
 
-enum { TEXEL_BYTES = 16, POISON = 0xa5, LARGE_PAGE_BYTES = 2 << 20 };
+enum { TEXEL_BYTES = 16, POISON = 0xa5 };
 
 enum placement {
     PLACE_DEVICE,  /* memory of the device, not mapped */
