@@ -90,9 +90,13 @@ whit 60 devices >"$scratch/devices.txt"
 code=$?
 say "$("$busybox" grep -v '^cache\|^ *Mesa' "$scratch/devices.txt")"
 whit 60 devices --json >"$out/devices.json"
+if [ "$code" -eq 0 ]; then
+    whit 60 render "$here/scenes/cube.json" -o "$scratch/p.exr" --size 16x16 --device "$device" -q
+    code=$?
+fi
 if [ "$code" -ne 0 ]; then
-    say "There is no device that whit can use (exit code $code)."
-    tail -n 3 "$log"
+    say "There is no device \`$device\` that whit can use (exit code $code):"
+    say "$(tail -n 3 "$log")"
     exit 3
 fi
 

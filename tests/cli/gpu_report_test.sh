@@ -36,8 +36,14 @@ mv "$REPORT" "$BARE/report"
     { echo "SKIPPED: no devices may be made"; exit 77; }
 mount -t proc proc "$BARE/proc" || { echo "SKIPPED: no proc may be mounted"; exit 77; }
 trap 'umount "$BARE/proc" && rm -rf --one-file-system "$OUT"' EXIT
+bare_run() {
+    env -i "$(command -v chroot || echo /usr/sbin/chroot)" "$BARE" /report/bin/busybox sh /report/run "$@" >"$OUT/run.txt" 2>&1
+}
+bare_run /none gone
+check "a device that is not there: exit code 3" test $? -eq 3
+check "which is said" grep -q 'no device .gone.' "$BARE/none/report.txt"
 start=$(date +%s)
-env -i "$(command -v chroot || echo /usr/sbin/chroot)" "$BARE" /report/bin/busybox sh /report/run /out >"$OUT/run.txt" 2>&1
+bare_run /out
 status=$?
 took=$(($(date +%s) - start))
 cat "$OUT/run.txt"
