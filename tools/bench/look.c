@@ -1,5 +1,6 @@
 /* `whit bench look`: how soon the window shows a model that whit has never drawn. Each run has the
-   caches that other scenes have filled, in a copy of its own. */
+   caches that other scenes have filled, in a copy of its own. A scene file is also drawn with as
+   many samples as it is refined to at rest. */
 #include <stdlib.h>
 
 #include "base/path.h"
@@ -13,7 +14,8 @@ enum { OTHERS = sizeof others / sizeof *others };
 /* Seconds; there are no further aims. A picture that can be recognised has at least PICTURE_WIDTH
    pixels across. */
 static const struct goal first_goal = {0.4, 0.4, false}, textured_goal = {0.7, 0.7, false},
-                         whole_goal = {1.2, 1.2, false};
+                         whole_goal = {1.2, 1.2, false}, scene_goal = {1.6, 1.6, false},
+                         refined_goal = {22.0, 22.0, false};
 enum { PICTURE_WIDTH = 160 };
 static const char replay[] = "clock real\npicture\nstate first\nstill\nstate whole\n";
 
@@ -21,8 +23,8 @@ struct look {
     struct bench *bench;
     struct table *table;
     char filled[BENCH_PATH], cache[BENCH_PATH], replay[BENCH_PATH], states[BENCH_PATH];
-    struct sample_runs first, whole; /* ms from the start of the process */
-    double narrowest;                /* width of a first picture, pixels */
+    struct sample_runs first, whole, refined; /* ms from the start of the process */
+    double narrowest;                         /* width of a first picture, pixels */
 };
 
 static double number_at(const struct look *look, const char *state, const char *part,
@@ -34,15 +36,16 @@ static double number_at(const struct look *look, const char *state, const char *
     return value;
 }
 
-static whit_result run_viewer(const struct look *look, const char *path, const char *cache)
+static whit_result run_viewer(const struct look *look, const char *path, const char *cache,
+                              const char *samples)
 {
     const struct bench_request *ask = &look->bench->ask;
     char messages[BENCH_PATH], size[32];
     struct process process = {.program = look->bench->whit, .out = look->states, .err = messages};
     bench_file(look->bench, "messages", messages);
     snprintf(size, sizeof size, "%ux%u", ask->width, ask->height);
-    process_add(&process, "whit", "view", path, "--size", size, "--quiet", "--replay", look->replay,
-                "--remember", "no", NULL);
+    process_add(&process, "whit", "view", path, "--size", size, "--aa", samples, "--quiet",
+                "--replay", look->replay, "--remember", "no", NULL);
     process_add_device(&process, look->bench);
     if (setenv("XDG_CACHE_HOME", cache, 1) != 0)
         return WHIT_ERROR_MEMORY;
@@ -56,22 +59,38 @@ static whit_result fill_caches(const struct look *look)
     for (int i = 0; result == WHIT_OK && i < (look->bench->ask.quick ? 1 : OTHERS); ++i) {
         result = bench_find(look->bench, others[i], path);
         if (result == WHIT_OK)
-            result = run_viewer(look, path, look->filled);
+            result = run_viewer(look, path, look->filled, "1");
         if (result == WHIT_OK)
             result = bench_step(look->bench);
     }
     return result;
 }
 
-static whit_result run_once(struct look *look, const char *path)
+/* Shows the scene with this many samples, with a copy of the filled caches. */
+static whit_result show(const struct look *look, const char *path, const char *samples,
+                        double *start_ms)
 {
     struct process copy = {.program = "cp"};
     process_add(&copy, "cp", "-R", look->filled, look->cache, NULL);
     whit_result result = process_run(&copy, NULL);
-    double start_ms = whit_clock_ms();
+    *start_ms = whit_clock_ms();
     if (result == WHIT_OK)
-        result = run_viewer(look, path, look->cache);
+        result = run_viewer(look, path, look->cache, samples);
     process_remove_folder(look->cache);
+    return result;
+}
+
+static whit_result run_once(struct look *look, const char *path)
+{
+    double start_ms;
+    whit_result result = WHIT_OK;
+    if (path_is(path, "json")) {
+        result = show(look, path, "16", &start_ms);
+        if (result == WHIT_OK)
+            sample_add(&look->refined, number_at(look, "whole", "measure", "clock_ms") - start_ms);
+    }
+    if (result == WHIT_OK)
+        result = show(look, path, "1", &start_ms);
     if (result != WHIT_OK)
         return result;
     double first_ms = number_at(look, "first", "measure", "first_ms") - start_ms;
@@ -109,14 +128,17 @@ static whit_result run_model(struct look *look, const char *path)
     bool has_textures = result == WHIT_OK && loaded.info.texture_count > 0;
     if (result == WHIT_OK)
         bench_unload(&loaded);
-    look->first.count = look->whole.count = 0;
+    bool is_scene = path_is(path, "json");
+    look->first.count = look->whole.count = look->refined.count = 0;
     look->narrowest = 0.0;
     for (uint32_t i = 0; result == WHIT_OK && i < look->bench->ask.runs; ++i)
         result = run_once(look, path);
     if (result != WHIT_OK)
         return result;
     put_row(look, path, "first", &look->first, has_textures ? textured_goal : first_goal);
-    put_row(look, path, "whole", &look->whole, whole_goal);
+    put_row(look, path, "whole", &look->whole, is_scene ? scene_goal : whole_goal);
+    if (is_scene)
+        put_row(look, path, "16 samples", &look->refined, refined_goal);
     if (look->narrowest < PICTURE_WIDTH && !look->bench->ask.quick)
         table_say(look->table, "%s: its first picture has %.0f pixels across, fewer than %d.",
                   path_name(path), look->narrowest, PICTURE_WIDTH);
@@ -139,7 +161,8 @@ whit_result bench_look(struct bench *bench)
     table_say(&table,
               "Times by the clock from the start of `whit view` until the window shows the first "
               "picture, and the whole one, of %u x %u pixels. Caches are filled by whit's scenes "
-              "alone. Models with textures have the second limit of a first picture, %.1f s.",
+              "alone. Models with textures have the second limit of a first picture, %.1f s. Scene "
+              "files are also shown with the 16 samples that pictures at rest get.",
               ask->width, ask->height, textured_goal.must);
     bench_file(bench, "filled", look.filled);
     bench_file(bench, "cache", look.cache);
