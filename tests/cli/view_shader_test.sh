@@ -318,6 +318,45 @@ until shader.hash = $rrr
 twice: | error = | frame.pixels not as renamed | frame.ids as start
 END
     check "the compiler's two errors are told once each" test "$(grep -c 'error: live/h.glsl' "$OUT/stderr")" -eq 2
+    # Each of these is told, and the next good save mends it.
+    post '    for (;;) color.r += 1e-9; return color;' >endfor.new
+    post '    do color.r += 1e-9; while (color.r > -1.0); return color;' >enddo.new
+    post '    for (int i = 0; i < 1000; ++i) for (int k = 0; k < 1000; ++k) color.r += 1e-9; return color;' >nested.new
+    { echo 'float f(float x) { return f(x); }' && post '    return color * f(1.0);'; } >recursion.new
+    { printf 'float g(float x);\nfloat f(float x) { return g(x); }\nfloat g(float x) { return f(x); }\n' &&
+        post '    return color * f(1.0);'; } >mutual.new
+    post '    float a[2684354560]; a[at.x] = 1.0; return color * a[at.y];' >array.new
+    post '    float a[2000000000]; a[at.x] = 1.0; return color * a[at.y];' >large.new
+    post '    float a[4]; return color * a[-1];' >before.new
+    post '    float a[4]; return color * a[2147483648u];' >behind.new
+    post '    return color * 1e30 * 1e30 + 1e38 * 1e30;' >inf.new
+    post '    return (color + 1.0) / (color.r - color.r);' >division.new
+    post '    discard; return color;' >discard.new
+    post '    if (at.x > 3) barrier(); return color;' >barrier.new
+    post '    if (at.x > 3) return color;' >return.new
+    { echo 'return 1;' && post '    return color;'; } >outside.new
+    post "    return color; // $(head -c 1000000 /dev/zero | tr '\0' x)" >line.new
+    for name in h.glsl part /dev/zero; do
+        { echo "#include \"$name\"" && post '    return color;'; } >"include$(echo $name | tr -d ./).new"
+    done
+    { echo '#version 100' && post '    return color;'; } >version.new
+    : >empty.new
+    printf '\177ELF\001\000' >binary.new
+    cp good.new live/h.glsl
+    told=0
+    echo 'start: | error =' >table
+    for name in endfor enddo nested recursion mutual array large before behind inf division discard barrier return outside line \
+        includehglsl includepart includedevzero version empty binary; do
+        told=$((told + 1))
+        echo "do put $name.new live/h.glsl"
+        echo "until shader.refused = $told"
+        echo "$name: | error has h.glsl | frame.pixels as start"
+        echo "do echo // $name >>good.new && put good.new live/h.glsl"
+        echo "until error = $NONE"
+        echo "after-$name: | error = | frame.pixels as start"
+    done >>table
+    play "each of many harmful saves, and a good one" cube.json --size 96x64 --shader live/h.glsl <table
+    check "each is told once" test "$(grep -c error: "$OUT/stderr")" -eq $told
     # A save that ends the measurement of the one before leaves its line.
     versions live/h.glsl good gbr grb
     play "saves in a row" cube.json --size 96x64 --shader live/h.glsl <<END
