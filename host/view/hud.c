@@ -109,15 +109,15 @@ static void draw_shares(const struct engine_frame *frame, uint32_t stage)
     }
 }
 
-/* Draws the times of stages, scaled up from one tile in eight that had time stamps. */
+/* Draws the rays and times of stages, scaled up from one tile in eight that had time stamps. */
 static void draw_stages(const struct engine_frame *frame)
 {
     const whit_stats *s = &frame->stats;
     for (int i = 0; i < WHIT_STAGES; ++i) {
         const whit_stage *stage = &s->stages[i];
         if (stage->rays && stage->ms >= 0.0)
-            ui_text_dim("%s %.2f ms, %.0f ns a ray", stage->name, stage->ms,
-                        stage->ms * 1e6 / (double)stage->rays);
+            ui_text_dim("%s %.2f ms, %llu rays, %.0f ns a ray", stage->name, stage->ms,
+                        (unsigned long long)stage->rays, stage->ms * 1e6 / (double)stage->rays);
         draw_shares(frame, (uint32_t)i);
     }
 }
