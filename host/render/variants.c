@@ -88,6 +88,15 @@ static bool writes_wide_rows(const struct device *device)
    sum stored, once for all of them. More would gain little, and a submission may take 100 ms. */
 enum { LIGHTS_EACH = 8 };
 
+/* A user's shape is asked about one light at a time. The many rays to a light with an area, and
+   rays without trees, can fill an invocation's loops, whose iterations drivers limit. */
+static bool lights_share_dispatches(const struct renderer *renderer)
+{
+    return renderer->frame.light_count > LIGHT_LISTS && !renderer->accel->no_trees &&
+           (lights_kinds(&renderer->pose) & LIGHT_FLAT_BITS) == 0 &&
+           !shader_has(renderer->params.shader, WHIT_HOOK_INTERSECT);
+}
+
 static struct gpu_spec make_spec(const struct target *target, const struct scene_effects *effects,
                                  bool secondary)
 {
@@ -124,9 +133,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_MINIFICATION = textures_minify(renderer);
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
-    /* A user's shape is asked about one light at a time. */
-    if (renderer->frame.light_count > LIGHT_LISTS &&
-        !shader_has(renderer->params.shader, WHIT_HOOK_INTERSECT))
+    if (lights_share_dispatches(renderer))
         spec.SPEC_LIGHTS_EACH = LIGHTS_EACH;
     if (renderer->params.shader) {
         spec.SPEC_HOOKS = renderer->params.shader->hooks;

@@ -338,41 +338,42 @@ TEST_BY_TURNS(emitters_do_not_light_themselves, 3, 4)
     }
 }
 
-/* A box on a floor under LAMPS lights of two kinds, of which only number `lit` shines; -1: all. */
+/* A box on a floor under LAMPS lights, of which only number `lit` shines; -1: all. `flat`: every
+   second one has an area. */
 enum { LAMPS = 2 * LIGHT_LISTS + 3 };
 
-static struct image lamps_image(int lit, whit_numerics level)
+static struct picture lamps_picture(int lit, bool flat)
 {
-    const whit_renderer_params params = {
-        .width = 24, .height = 24, .light_samples = 4, .numerics = level};
+    const whit_renderer_params params = {.width = 24, .height = 24, .light_samples = 4};
     struct scene *scene = floor_scene(eye_height);
     add_object(scene, mesh_box(1, 1, 1), matte(0.5, 1, 1), 0.5, 0.5, 0);
     for (int i = 0; i < LAMPS; ++i) {
-        bool flat = i % 2;
         const double at[3] = {sin(i), 1.2 + 0.3 * i, cos(i)};
-        struct scene_light light =
-            emitter(flat ? WHIT_LIGHT_RECTANGLE : WHIT_LIGHT_POINT, at, (double[]){0.3, 0, 0},
-                    (double[]){0, 0, 0.3}, lit < 0 || lit == i ? 0.1f + 0.01f * (float)i : 0);
+        struct scene_light light = emitter(flat && i % 2 ? WHIT_LIGHT_RECTANGLE : WHIT_LIGHT_POINT,
+                                           at, (double[]){0.3, 0, 0}, (double[]){0, 0, 0.3},
+                                           lit < 0 || lit == i ? 0.1f + 0.01f * (float)i : 0);
         scene_put_light(scene, light);
     }
-    return color_of(scene, NULL, &params);
+    return picture_of(scene, NULL, &params);
 }
 
 /* Where there are more lights than lists, a dispatch adds several: each once, one after the other.
- */
+   Lights with an area, which take many rays, have a dispatch each. */
 TEST(many_lights_are_added_in_their_order)
 {
-    for (int exact = 0; exact < 2; ++exact) {
-        whit_numerics level = exact ? WHIT_NUMERICS_EXACT : WHIT_NUMERICS_WATERTIGHT;
-        own_image all = lamps_image(-1, level), sum = lamps_image(0, level);
+    uint64_t dispatches[2];
+    for (int flat = 0; flat < 2; ++flat) {
+        own_picture all = lamps_picture(-1, flat), sum = lamps_picture(0, flat);
         for (int lit = 1; lit < LAMPS; ++lit) {
-            own_image one = lamps_image(lit, level);
-            assert_true(red_sum(&one) > 0.0);
-            for (uint32_t i = 0; i < 4 * sum.width * sum.height; ++i)
-                sum.pixels[i] = i % 4 == 3 ? 1.0f : sum.pixels[i] + one.pixels[i];
+            own_picture one = lamps_picture(lit, flat);
+            assert_true(red_sum(&one.color) > 0.0);
+            for (uint32_t i = 0; i < 4 * sum.color.width * sum.color.height; ++i)
+                sum.color.pixels[i] = i % 4 == 3 ? 1.0f : sum.color.pixels[i] + one.color.pixels[i];
         }
-        assert_same_image("the sum of pictures of one light", &all, &sum);
+        assert_same_image("the sum of pictures of one light", &all.color, &sum.color);
+        dispatches[flat] = all.stats.dispatches;
     }
+    assert_int_equal(dispatches[1] - dispatches[0], LAMPS - (LAMPS + 7) / 8);
 }
 
 /* Rings, two of them of glass, and a table over terrain, all moved by `moved` along each axis, the
