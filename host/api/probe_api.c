@@ -213,6 +213,8 @@ static whit_result report_from(const whit_renderer *renderer, const struct probe
         .calls = calls,
         .call_count = call_count,
         .shaded = shader_has(renderer->params.shader, WHIT_HOOK_SHADE),
+        .unshadowed = renderer->params.shadows == WHIT_SHADOWS_NONE ||
+                      (renderer->params.effects_removed >> SCENE_EFFECT_SHADOWS & 1),
     };
     memcpy(report->color, from->color, sizeof report->color);
     whit_image pixel = {.image = {.width = 1, .height = 1, .channels = 4, .pixels = report->color}};

@@ -36,9 +36,25 @@ static int part_of(const whit_probe_report *report, uint32_t ray)
                                                   : PART_THROUGH;
 }
 
+/* Whether shadow rays start at the hit of the camera ray, and none of them reaches its light. */
+static bool is_shadowed(const whit_probe_report *report)
+{
+    bool asked = false;
+    for (uint32_t i = 1; i < report->ray_count; ++i) {
+        const whit_probe_ray *ray = &report->rays[i];
+        if (ray->kind != WHIT_RAY_SHADOW || ray->parent != 0)
+            continue;
+        asked = true;
+        if (sum_of(ray->added) > 0.0)
+            return false;
+    }
+    return asked;
+}
+
 static void say_parts(const whit_probe_report *report, struct sentence *to)
 {
-    static const char *const names[PARTS] = {"direct", "reflected", "transmitted"};
+    const char *const names[PARTS] = {is_shadowed(report) ? "ambient or emitted" : "direct",
+                                      "reflected", "transmitted"};
     double parts[PARTS] = {0.0}, all = 0.0;
     for (uint32_t i = 0; i < report->ray_count; ++i) {
         if (report->rays[i].kind != WHIT_RAY_SHADOW)
@@ -111,6 +127,10 @@ static void say_lights(const whit_probe_report *report, const whit_scene *scene,
     whit_scene_info info;
     uint32_t told = 0;
     whit_scene_get_info(scene, &info);
+    if (report->unshadowed && info.light_count > 0) {
+        put(to, "; no light is blocked, as there are no shadows");
+        return;
+    }
     for (int asked = 1; asked >= 0; --asked) {
         for (uint32_t i = 0; i < info.light_count; ++i) {
             whit_light_info light;

@@ -111,8 +111,9 @@ typedef struct whit_probe_report {
        sample; post() runs once for all samples. */
     whit_probe_call *calls;
     uint32_t call_count;
-    bool shaded; /* shade() of the shader has lit the surfaces: which lights it asked is not
-                    recorded */
+    bool shaded;     /* shade() of the shader has lit the surfaces: which lights it asked is not
+                        recorded */
+    bool unshadowed; /* there are no shadows, and so no shadow rays */
 } whit_probe_report;
 
 /* Traces pixel (x, y), counted from the upper left, once more and alone; the rendered picture

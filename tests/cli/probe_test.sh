@@ -50,7 +50,11 @@ why() {
 }
 why whitted 32,20 "its light: 1[0-9] % reflected, 8[0-9] % transmitted; \`lamp\` adds nothing"
 why default 50,36 "its light: 9[0-9] % direct, [0-9] % reflected; \`sun\` reaches it; [67][0-9] % of \`fill\` reaches it"
-why 34k 22,40 "its light: 100 % direct; \`warm\` does not reach it, behind \`hat\`; .*; \`top\` does not .*, behind \`hat\`"
+why 34k 22,40 "its light: 100 % ambient or emitted; \`warm\` does not reach it, behind \`hat\`; .*; \`top\` does not .*, behind \`hat\`"
+for without in "--shadows none" "--effects -shadows"; do
+    # shellcheck disable=SC2086
+    why 34k 22,40 "its light: 100 % direct; no light is blocked, as there are no shadows" $without
+done
 why room 40,40 "no light comes from it; the scene has no light but its surroundings" --light none
 why cube 0,0 "nothing is there but the surroundings"
 expect 0 "little room" probe "$GLASS" $S --pixel 32,20 --rays 3
