@@ -162,7 +162,8 @@ static void place(const struct watch *watch, struct watched *file)
         file->folder = path ? watch_folder(watch, path) : -1;
         file->name = path ? string_copy(path_name(path)) : NULL;
         file->lacks_folder = path && strlen(path) < strlen(file->path);
-        comes = file->lacks_folder && file->folder >= 0 && stat(path, &info) == 0;
+        comes = file->lacks_folder && file->folder >= 0 && stat(path, &info) == 0 &&
+                S_ISDIR(info.st_mode);
         free(path);
     }
 }

@@ -171,6 +171,25 @@ TEST_IN(folders_that_are_replaced_are_followed, folder_begin, folder_end)
     watch_destroy(watch);
 }
 
+TEST_IN(a_file_in_the_place_of_a_folder_is_followed, folder_begin, folder_end)
+{
+    struct watch *watch = watch_create(wake);
+    put_text("part", "1");
+    watch_add(watch, in_folder("part/deep/a.glsl"), moment());
+    assert_false(watch_changed(watch));
+    put_text("part", "2");
+    assert_true(watch_changed(watch));
+    assert_int_equal(unlink(in_folder("part")), 0);
+    assert_int_equal(mkdir(in_folder("part"), 0700), 0);
+    assert_int_equal(mkdir(in_folder("part/deep"), 0700), 0);
+    put_text("part/deep/a.glsl", "1");
+    assert_true(watch_changed(watch));
+    assert_false(watch_changed(watch));
+    put_text("part/deep/a.glsl", "2");
+    assert_true(watch_changed(watch));
+    watch_destroy(watch);
+}
+
 TEST(nothing_is_fine)
 {
     watch_add(NULL, "a", watch_now_ns());
