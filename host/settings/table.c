@@ -436,7 +436,7 @@ const struct setting settings_table[] = {
      "OBJ, PLY and STL as their shape says; trace, bvh, hard and\n"
      "--triangles take it as it is unless told",
      AT(CHOICE, load.up), .values = values_up, .commands = IN_SCENES, .change = SETTING_HITS,
-     .need = SETTING_NEEDS_SCENE, .title = "up"},
+     .need = SETTING_NEEDS_SCENE, .title = "up", .key = '7'},
     {"clip", 0, "NAME|N",
      "of a glTF with many animations: the one that is played, by name\n"
      "or number",
@@ -447,14 +447,14 @@ const struct setting settings_table[] = {
      "where that lights nothing; nothing but the file's; no\n"
      "light; whit's in place of the file's",
      AT(CHOICE, load.lights), .values = values_lights, .commands = IN_PICTURES | IN_COST | IN_SCENE,
-     .change = SETTING_LIGHT, .need = SETTING_NEEDS_SCENE, .title = "light",
+     .change = SETTING_LIGHT, .need = SETTING_NEEDS_SCENE, .title = "light", .key = '8',
      .steps = values_lights},
     {"environment", 0, "FILE", "a picture all around, in place of the file's sky", "",
      AT(TEXT, environment), .commands = IN_PICTURES | IN_COST | IN_SCENE, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_SCENE, .trusted = true},
     {"background", 0, "#rrggbb|env", "one colour in place of the sky; env: the sky",
      AT_OWN(background), .commands = IN_PICTURES | IN_COST | IN_SCENE, .change = SETTING_LIGHT,
-     .need = SETTING_NEEDS_SCENE, .title = "background", .steps = steps_background},
+     .need = SETTING_NEEDS_SCENE, .title = "background", .key = '/', .steps = steps_background},
     {"texture-limit", 0, "N", "halve textures with a longer side", AT(COUNT, load.texture_limit),
      .min = 1, .max = 16384, .commands = IN_PICTURES | IN_SCENE | IN_BVH, .change = SETTING_LIGHT,
      .need = SETTING_NEEDS_SCENE},

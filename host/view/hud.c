@@ -348,7 +348,7 @@ static void draw_help(struct view *view)
         {"middle", "drag, or Shift and left: aside"},
         {"wheel", "nearer"},
         {"W A S D Q E", "fly; with Shift faster"},
-        {"Shift", "with Y Z V N J K O T M: one back"},
+        {"Shift", "with Y Z 7 8 / V N J K O T M: one back"},
         {"drop", "open a file; a .view: its settings; .hdr, .exr: a sky"},
     };
     const int widths[2] = {SHEET_KEYS,

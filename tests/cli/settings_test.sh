@@ -160,8 +160,8 @@ if part 0 2; then
         echo state start
         while IFS=$TAB read -r name value commands _ key _; do
             [ "$key" != - ] || continue
-            press=$(test "$key" = = && echo Equal || echo "$key")
-            back=$(test "$key" = = && echo Minus || echo "Shift+$key")
+            press=$(echo "$key" | sed 's/=/Equal/; s/\//Slash/')
+            back=$(test "$key" = = && echo Minus || echo "Shift+$press")
             printf 'press %s\nstate %s\npress %s\nstate %s-back\n' "$press" "$name" "$back" "$name"
         done <rows
     } >keys

@@ -93,6 +93,13 @@ END
 
     # ---- Bounces and samples, and what is painted ----
 
+    play "upright, light and background" "$CUBE" --size 48x32 <<END
+x: press 7 | keys.up = x | words = --size 48x32 --up x
+file: press 8 | keys.light = the file's | words = --size 48x32 --up x --light file
+white: press Slash | keys.background = white | words has --background
+back: press Shift+7, press Shift+8, press Shift+Slash | words = --size 48x32
+END
+
     play "bounces, samples, views" "$SCENES/balls.json" --size 48x32 <<END
 start: | keys.bounces = 8 | frame.view = color
 depth: press B | frame.view = depth | frame.ids as start
