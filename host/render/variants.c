@@ -88,11 +88,13 @@ static bool writes_wide_rows(const struct device *device)
    sum stored, once for all of them. More would gain little, and a submission may take 100 ms. */
 enum { LIGHTS_EACH = 8 };
 
-/* A user's shape is asked about one light at a time. The many rays to a light with an area, and
-   rays without trees, can fill an invocation's loops, whose iterations drivers limit. */
+/* A user's shape is asked about one light at a time. The many rays to a light with an area, rays
+   without trees, and the integers of NUMERICS_EXACT can fill an invocation's loops, whose
+   iterations drivers limit. */
 static bool lights_share_dispatches(const struct renderer *renderer)
 {
     return renderer->frame.light_count > LIGHT_LISTS && !renderer->accel->no_trees &&
+           renderer->params.numerics != NUMERICS_EXACT &&
            (lights_kinds(&renderer->pose) & LIGHT_FLAT_BITS) == 0 &&
            !shader_has(renderer->params.shader, WHIT_HOOK_INTERSECT);
 }

@@ -186,6 +186,18 @@ TEST(pictures_equal_those_of_trees)
         check_picture(file_scene(names[i]), file_scene(names[i]), &params);
 }
 
+/* Shadow rays to many lights do not share the loop iterations that a driver allows. */
+TEST(many_lights_are_drawn)
+{
+    struct scene *scene = scene_begin(&fixture_log, "ground");
+    scene_put(scene, mesh_terrain(8.0, 0.6, 100, 1), NULL);
+    for (uint32_t i = 0; i <= LIGHT_LISTS; ++i)
+        scene_put_lamp(scene, 0.1 * i, 5, 0, 1);
+    const whit_renderer_params params = {.width = 8, .height = 8};
+    own_picture picture = picture_of(scene, &no_trees, &params);
+    assert_true(picture.stats.rays_shadow > 0);
+}
+
 /* The shadow rays to all points of an area light share the loop iterations that a driver allows:
    too many points are refused, and the kernel itself notices too. */
 TEST(many_shadows_are_refused)
