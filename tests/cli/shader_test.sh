@@ -322,6 +322,27 @@ for example in "$EXAMPLES"/*.glsl; do
     check "$name is no usual picture" test "$status" -eq 1
 done
 
+# ---- Animation, adaptive samples, refinement, levels of numerics ----
+
+if part 0 2; then
+    echo 'vec3 shade(Surface s, Optics o, vec3 to_eye) { return 0.5 + 0.5 * s.ns; }' >normals.glsl
+    draw "frames" f.#.pfm spin --shader normals.glsl --frames 0-1 --fps 2
+    draw "a frame alone" one.pfm spin --shader normals.glsl --time 0.5
+    check "is the same" cmp f.1.pfm one.pfm
+    check "and another one than the first" sh -c '! cmp -s f.0.pfm f.1.pfm'
+    for level in watertight exact fast; do
+        draw "$level" $level.pfm spin --shader normals.glsl --numerics $level
+        expect 0 "as displayed" compare $level.pfm watertight.pfm --metric over --tolerance 0.01
+    done
+    draw "adaptive samples" a.pfm spin --shader normals.glsl --aa adaptive:0.05
+    draw "in other tiles" b.pfm spin --shader normals.glsl --aa adaptive:0.05 --tile-size 16
+    check "the same bytes of adaptive samples" cmp a.pfm b.pfm
+    expect 0 "refined" render "$SCENES/spin.json" --size 48x32 --shader normals.glsl --refine 0.02 -o a.pfm
+    samples=$(sed -n 's/.*note: \([0-9]*\) samples a pixel.*/\1/p' "$OUT/stderr")
+    draw "its $samples samples at once" b.pfm spin --shader normals.glsl --aa "$samples"
+    check "are the same picture" cmp a.pfm b.pfm
+fi
+
 # ---- Refusals at run time ----
 
 if part 1 2; then
