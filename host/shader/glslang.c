@@ -19,6 +19,7 @@
 #include "shader/refuse.h"
 #include "shader/repairs.h"
 #include "shader/returns.h"
+#include "shader/zeros.h"
 
 struct compilation {
     const struct glslang_question *question;
@@ -29,6 +30,7 @@ struct compilation {
     /* Type and id of each variable of the user's current function that must be set to 0 at its
        start. */
     struct spv_words unset;
+    struct zeros zeros;
 };
 
 static void report(struct compilation *c, struct spv_place place, const char *why)
@@ -121,11 +123,10 @@ static void begin_variables(struct compilation *c, struct spv_module *m, const u
         spv_put(m, &c->unset, words + 1, 2);
     if (op == OP_VARIABLE || op == OP_LINE || op == OP_NO_LINE)
         return;
-    for (uint32_t i = 0; i < c->unset.count; i += 2) {
-        const uint32_t *pointer = spv_def(m, c->unset.words[i]);
-        if (pointer && spv_length(pointer) == 4)
-            SPV_EMIT(m, OP_STORE, c->unset.words[i + 1], spv_null(m, pointer[3]));
-    }
+    for (uint32_t i = 0; i < c->unset.count; i += 2)
+        zeros_put(&c->zeros, m, c->unset.words[i], c->unset.words[i + 1]);
+    if (c->unset.count)
+        zeros_end(&c->zeros, m);
     c->unset.count = 0;
 }
 
@@ -166,6 +167,7 @@ static void take_instruction(struct compilation *c, struct spv_module *m, const 
         if (why && !taken)
             report(c, m->place, why);
     }
+    taken = taken || zeros_begin(&c->zeros, m, words);
     if (!taken && !repairs_take(m, words))
         spv_put(m, &m->body, words, spv_length(words));
 }

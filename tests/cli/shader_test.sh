@@ -179,6 +179,24 @@ void linked(uint seed) {
 END
     expect 0 "what is linked" shader linked.glsl
     check "all of it" grep -q "test linked: passed, 7 checks of 4096 seeds" "$OUT/stdout"
+    cat >zeros.glsl <<'END'
+struct Pair { float a; vec2 b; };
+float sum(int n)
+{
+    float a[1000]; mat4 b[37]; Pair c[50]; vec3 d[3]; float sum = 0.0;
+    for (int i = 0; i < 1000; i++)
+        sum += abs(a[i]) + abs(b[i % 37][i % 4].y) + abs(c[i % 50].b.x) + abs(d[i % 3].z);
+    a[n % 1000] = 1.0; b[n % 37][3] = vec4(2.0); c[n % 50] = Pair(3.0, vec2(4.0)); d[n % 3] = vec3(5.0);
+    return sum + a[n % 1000] + b[n % 37][3].x + c[n % 50].b.y + d[n % 3].x - 12.0;
+}
+//@ test
+void zeros(uint seed)
+{
+    for (int k = 0; k < 2; k++) check(sum(int(seed) + k) == 0.0);
+}
+END
+    expect 0 "variables in each call" shader zeros.glsl
+    check "begin as 0, large arrays too" grep -q "test zeros: passed, 1 check of 4096 seeds" "$OUT/stdout"
     expect 1 "a slider in tests" shader tests.glsl --set bands=4
     said "the failed check" "tests.glsl:8: check(bands <= 3.0) fails for 4096 of 4096 seeds of fine, the smallest is 0"
     cat >wrong.glsl <<'END'
