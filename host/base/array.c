@@ -63,14 +63,17 @@ void *array_copy(const void *data, size_t count, size_t element_bytes)
     return copy ? memcpy(copy, data, count * element_bytes) : NULL;
 }
 
-/* A large page is given only where all of it is inside a block. */
+/* A large page is given only where all of it is inside a block: blocks of half a page and more are
+   made that large. */
 void *array_alloc_lines(size_t count, size_t element_bytes)
 {
     size_t bytes;
     if (!product(count, element_bytes, &bytes))
         return NULL;
     bytes = (bytes + 63) & ~(size_t)63;
-    bool large = bytes >= LARGE_PAGE_BYTES;
+    bool large = bytes >= LARGE_PAGE_BYTES / 2;
+    if (large && bytes < LARGE_PAGE_BYTES)
+        bytes = LARGE_PAGE_BYTES;
     void *memory = aligned_alloc(large ? LARGE_PAGE_BYTES : 64, bytes);
     if (memory && large)
         platform_expect_much(memory, bytes);
