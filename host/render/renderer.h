@@ -106,7 +106,7 @@ struct stage_set {
     enum stage of[STAGE_COUNT];      /* the stage whose kernel each runs: itself, or a later one */
     uint32_t classes;                /* classes of materials; each has its own shading kernel */
     uint32_t hit_rows;               /* as variant_hit_rows() */
-    uint32_t lights_each;            /* lights of a dispatch: SPEC_LIGHTS_EACH */
+    uint32_t lights_each;            /* lights of a dispatch: SPEC_LIGHTS_EACH, or 1 */
     bool calls[CLASSES_MAX];         /* whether hits of a class send further rays */
     bool asks;                       /* whether hits go on to the shadow stages */
 };
@@ -131,6 +131,8 @@ struct stages {
     struct stage_times times;
     uint32_t expected;       /* number of generations of the last tile */
     bool full;               /* a queue overflowed in the last submission */
+    bool may_cut;            /* loops that are cut short are no error: the tile is drawn again */
+    bool cut;                /* with may_cut: loops were cut short in the last submission */
     uint64_t *material_hits; /* by class and material, in timed tiles; NULL: none yet */
     /* Blocks that a tile may have, since a larger one overflowed a queue; 0: as many as fit. */
     uint32_t blocks_max;

@@ -82,7 +82,10 @@ static whit_result begin_submission(struct tile_run *run)
 static whit_result finish_submission(struct tile_run *run)
 {
     double start_ms = clock_ms();
+    struct stages *stages = &run->target->stages;
+    stages->may_cut = stages->set.lights_each > 1;
     whit_result result = render_finish_submission(run->target);
+    stages->may_cut = false;
     stage_times_take(run->target);
     double spent_ms = clock_ms() - start_ms;
     run->longest_ms = fmax(run->longest_ms, spent_ms);
@@ -210,6 +213,7 @@ static whit_result record_lights(struct tile_run *run)
     for (uint32_t i = 0; result == WHIT_OK && i < lights; i += each) {
         uint32_t list = LIST_LIGHTS + (by_light ? i : 0);
         run->chunk.light = i;
+        run->chunk.lights = lights - i < each ? lights - i : each;
         if (shadows)
             result = dispatch_own(run, STAGE_SHAPE, list);
         if (result == WHIT_OK)
@@ -332,7 +336,8 @@ static whit_result count_left(struct target *target, uint32_t generation, uint32
     return result;
 }
 
-/* Draws a tile; its pixels stay as they are if a queue overflows. */
+/* Draws a tile; its pixels stay as they are if a queue overflows, or loops are cut short that
+   several lights share. */
 static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile,
                              const struct progress *progress, double *longest_ms)
 {
@@ -362,9 +367,9 @@ static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile
         if (result == WHIT_OK)
             result = trace_generations(&run, done, end);
         *longest_ms = fmax(*longest_ms, run.longest_ms);
-        if (result == WHIT_OK && !stages->full)
+        if (result == WHIT_OK && !stages->full && !stages->cut)
             result = count_left(target, end, &left);
-        if (result != WHIT_OK || stages->full)
+        if (result != WHIT_OK || stages->full || stages->cut)
             return result;
         done = end;
         end += MORE_AT_ONCE;
@@ -378,11 +383,16 @@ static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile
     return result == WHIT_OK ? take_tally(target) : result;
 }
 
-/* If a queue overflows, the tile is drawn again in halves. */
+/* If loops are cut short that several lights share, the tile is drawn again, and from then on each
+   light has its own dispatch. If a queue overflows, the tile is drawn again in halves. */
 whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
                           const struct progress *progress, double *longest_ms)
 {
     whit_result result = draw_tile(target, chunk, progress, longest_ms);
+    if (result == WHIT_OK && target->stages.cut) {
+        target->stages.set.lights_each = 1;
+        result = draw_tile(target, chunk, progress, longest_ms);
+    }
     if (result != WHIT_OK || !target->stages.full)
         return result;
     if (chunk->block_count == 1 && queues_can_grow(target)) {

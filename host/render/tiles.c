@@ -51,8 +51,9 @@ whit_result status_check(struct target *target, bool traces)
     uint32_t word = 0;
     whit_result result = buffer_read(target->buffers.status, 0, &word, sizeof word);
     target->stages.full = (word & STATUS_QUEUE_FULL) != 0;
+    target->stages.cut = target->stages.may_cut && (word & STATUS_UNFINISHED) != 0;
     word &= ~STATUS_QUEUE_FULL;
-    if (result != WHIT_OK || word == 0)
+    if (result != WHIT_OK || word == 0 || target->stages.cut)
         return result;
     const struct {
         uint32_t bit;
@@ -83,7 +84,7 @@ whit_result status_check(struct target *target, bool traces)
     uint32_t places = word & (STATUS_FUEL | STATUS_SHAPE);
     /* Only the cause is told: what loops that were cut short have made follows from it. */
     if (word & (STATUS_FUEL | STATUS_CUT_LOOPS))
-        word &= ~(STATUS_UNFINISHED_TRAVERSAL | STATUS_UNFINISHED_LOOP);
+        word &= ~STATUS_UNFINISHED;
     if (word & STATUS_CUT_LOOPS)
         word &= ~STATUS_SHAPE;
     if (word & STATUS_FUEL)

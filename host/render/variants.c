@@ -88,13 +88,15 @@ static bool writes_wide_rows(const struct device *device)
    sum stored, once for all of them. More would gain little, and a submission may take 100 ms. */
 enum { LIGHTS_EACH = 8 };
 
-/* A user's shape is asked about one light at a time. The many rays to a light with an area, rays
-   without trees, and the integers of NUMERICS_EXACT can fill an invocation's loops, whose
-   iterations drivers limit. */
-static bool lights_share_dispatches(const struct renderer *renderer)
+/* A user's shape is asked about one light at a time, and so is a probed pixel. The many rays to a
+   light with an area, rays without trees, and the integers of NUMERICS_EXACT can fill an
+   invocation's loops, whose iterations drivers limit. Where others do, stages_sample() goes on with
+   one light at a time. */
+static bool lights_share_dispatches(const struct target *target)
 {
-    return renderer->frame.light_count > LIGHT_LISTS && !renderer->accel->no_trees &&
-           renderer->params.numerics != NUMERICS_EXACT &&
+    const struct renderer *renderer = target->renderer;
+    return !target->probed && renderer->frame.light_count > LIGHT_LISTS &&
+           !renderer->accel->no_trees && renderer->params.numerics != NUMERICS_EXACT &&
            (lights_kinds(&renderer->pose) & LIGHT_FLAT_BITS) == 0 &&
            !shader_has(renderer->params.shader, WHIT_HOOK_INTERSECT);
 }
@@ -135,7 +137,7 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_MINIFICATION = textures_minify(renderer);
     effects_switch(effects, &spec);
     refine_effects(renderer, effects, &spec);
-    if (lights_share_dispatches(renderer))
+    if (lights_share_dispatches(target))
         spec.SPEC_LIGHTS_EACH = LIGHTS_EACH;
     if (renderer->params.shader) {
         spec.SPEC_HOOKS = renderer->params.shader->hooks;

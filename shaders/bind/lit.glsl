@@ -41,12 +41,6 @@ uint list_of_light(uint light)
     return frame.light_count <= LIGHT_LISTS ? light : 0u;
 }
 
-// How many lights the dispatch adds, from chunk.light on.
-uint lights_each()
-{
-    return frame.light_count <= LIGHT_LISTS ? 1u : min(SPEC_LIGHTS_EACH, frame.light_count - chunk.light);
-}
-
 uint fetch_listed_lit(uint item)
 {
     uint at = (chunk.list - LIST_LIGHTS) * chunk.lit_capacity + item;

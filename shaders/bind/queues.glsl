@@ -352,9 +352,12 @@ uvec2 fetch_counts(uint generation, uint list)
     return uvec2(items.front, items.back);
 }
 
-// Whether the last generation that was traced called for no more rays.
+// Whether the last generation that was traced called for no more rays. Where a loop was cut short
+// in a dispatch of several lights, the tile is drawn again.
 bool is_tile_done()
 {
+    if (SPEC_LIGHTS_EACH > 1u && (status_word & STATUS_UNFINISHED) != 0u)
+        return false;
     if (chunk.light == GENERATION_NONE)
         return true;
     uvec2 left = fetch_counts(chunk.light, LIST_RAYS);

@@ -162,7 +162,7 @@ void main()
         if (SPEC_LIGHTS_EACH > 1u)
             fetch_own(r, alive[r]);
     }
-    uint end = chunk.light + lights_each();
+    uint end = chunk.light + chunk.lights;
     light_index = chunk.light;
     bool more = false;
     do {

@@ -376,6 +376,32 @@ TEST(many_lights_are_added_in_their_order)
     assert_int_equal(dispatches[1] - dispatches[0], LAMPS - (LAMPS + 7) / 8);
 }
 
+/* Slivers in the way of rays, which go through the boxes of all and hit none, under several lamps.
+   `black`: and a light with an area that sends none. */
+static struct picture slivers_picture(bool black)
+{
+    enum { SLIVERS = 12000 };
+    const float corners[9] = {-2, 0.5f, -2, 2, 0.5f, 2, 2, 0.5f, 1.99f};
+    const whit_renderer_params params = {.width = 8, .height = 8};
+    struct scene *scene = floor_scene(eye_height);
+    scene_put(scene, mesh_stack(SLIVERS, corners, 1, 1e-5f), NULL);
+    for (int i = 0; i < LAMPS; ++i)
+        scene_put_lamp(scene, 0.1 * i, eye_height, 0.5, 0.1f);
+    if (black)
+        scene_put_light(scene, emitter(WHIT_LIGHT_RECTANGLE, (double[]){0, 9, 0},
+                                       (double[]){1, 0, 0}, (double[]){0, 0, 1}, 0));
+    return picture_of(scene, NULL, &params);
+}
+
+/* Drivers limit the loops of a dispatch. Where lights have one each because one has an area, the
+   loops suffice. */
+TEST(lights_that_fill_loops_together_are_added_alone)
+{
+    own_picture together = slivers_picture(false), alone = slivers_picture(true);
+    assert_true(red_sum(&together.color) > 0.0);
+    assert_same_image("each light alone", &together.color, &alone.color);
+}
+
 /* Rings, two of them of glass, and a table over terrain, all moved by `moved` along each axis, the
    light too. With `slope` the ground is one triangle, so large that hits on it are rounded more
    coarsely than those on the rest. */
