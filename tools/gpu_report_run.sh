@@ -93,6 +93,7 @@ whit 60 devices --json >"$out/devices.json"
 if [ "$code" -eq 0 ]; then
     whit 60 render "$here/scenes/cube.json" -o "$scratch/p.exr" --size 16x16 --device "$device" -q
     code=$?
+    [ "$code" -eq 3 ] || code=0 # a device that is there, and fails: the parts below say where
 fi
 if [ "$code" -ne 0 ]; then
     say "There is no device \`$device\` that whit can use (exit code $code):"
