@@ -146,7 +146,7 @@ typedef struct whit_shader_info {
     uint32_t fuel;      /* most loop iterations per call of a function; 0: unlimited, the file is
                            trusted */
     bool traces; /* a function of the file calls one that traces rays: trace(), visible(), lit_by(),
-                    whit_shade() */
+                    whit_shade */
     uint32_t kernel_count;
     uint32_t instructions; /* SPIR-V instructions of all kernels, before specialization */
     uint64_t hash;         /* of the texts of all files */
