@@ -166,8 +166,8 @@ GPU_ASSERT_SIZE(gpu_work, 16)
 #define STATUS_NON_FINITE           8u /* NaN or infinite radiance */
 #define STATUS_UNFINISHED_LOOP      16u /* the loop over lights or another one was cut short */
 #define STATUS_MEDIUM_STACK_OVERFLOW 32u /* a ray was in more than MEDIA_MAX media */
-/* A queue between stages was full. This is no error: the tile is drawn again in smaller ones. */
 #define STATUS_UNFINISHED (STATUS_UNFINISHED_TRAVERSAL | STATUS_UNFINISHED_LOOP)
+/* A queue between stages was full. This is no error: the tile is drawn again in smaller ones. */
 #define STATUS_QUEUE_FULL 128u
 #define STATUS_FUEL 256u /* a loop of a user's function took more iterations than it may */
 #define STATUS_CUT_LOOPS 1024u /* loops behind a user's functions no longer have a second iteration */
