@@ -11,8 +11,9 @@
 static const double SLAB = 0.02, STANDS = 0.15, HARDLY = 0.02;
 /* Surfaces that cover at least this share of the ground are a floor. */
 static const double FLOOR = 0.5;
-/* Feet carry a model if the box around them covers at least FLOOR of the ground. A side on which it
-   hardly stands, such as the back of a car, covers less than this share. */
+/* Feet carry a model if the box around them covers at least FLOOR of the ground, and they are no
+   rim, such as that of a mask. A side on which it hardly stands, such as the back of a car, covers
+   less than this share. */
 static const double EDGE = 0.4;
 /* A floor may also lie up to this share of the extent above the end, as on a foundation. */
 static const double LOW = 0.1;
@@ -72,7 +73,23 @@ struct ending {
     double low;  /* covered by flat triangles within LOW of the end, each side of a solid counted */
     double rest; /* covered by the box around all triangles not in `flat`; 0: there are none */
     double feet; /* covered by the box around all corners within SLAB of the end */
+    bool rim;    /* some of these corners are in the middle of each side of the ground */
 };
+
+/* A bit for the side of the ground in whose middle third a corner is, in the outer third across; 0
+   for other places. */
+static unsigned side_of(const struct shape *ground, const double corner[3], int u, int v)
+{
+    const int axes[2] = {u, v};
+    int third[2];
+    for (int i = 0; i < 2; ++i) {
+        double lo = ground->lo[axes[i]], hi = ground->hi[axes[i]], at = corner[axes[i]];
+        third[i] = (3.0 * (at - lo) > hi - lo) - (3.0 * (hi - at) > hi - lo);
+    }
+    if ((third[0] == 0) == (third[1] == 0))
+        return 0;
+    return third[0] == 0 ? 1u << (third[1] > 0) : 4u << (third[0] > 0);
+}
 
 static struct ending look_below(const struct scene *scene, const struct shape *shape, int axis)
 {
@@ -80,6 +97,7 @@ static struct ending look_below(const struct scene *scene, const struct shape *s
     double ground = area_of(shape, u, v), area = 0.0, low = 0.0;
     struct shape rest, feet;
     double extent = shape->hi[axis] - shape->lo[axis];
+    unsigned sides = 0;
     double3_no_box(rest.lo, rest.hi);
     double3_no_box(feet.lo, feet.hi);
     double top = shape->lo[axis] + SLAB * extent, low_top = shape->lo[axis] + LOW * extent;
@@ -98,14 +116,17 @@ static struct ending look_below(const struct scene *scene, const struct shape *s
             for (int i = 0; i < 3; ++i) {
                 if (highest > top)
                     double3_grow_box(rest.lo, rest.hi, p[i]);
-                if (p[i][axis] <= top)
-                    double3_grow_box(feet.lo, feet.hi, p[i]);
+                if (p[i][axis] > top)
+                    continue;
+                double3_grow_box(feet.lo, feet.hi, p[i]);
+                sides |= side_of(shape, p[i], u, v);
             }
         }
     return ground > 0.0 ? (struct ending){.flat = area / ground,
                                           .low = low / ground,
                                           .rest = area_of(&rest, u, v) / ground,
-                                          .feet = area_of(&feet, u, v) / ground}
+                                          .feet = area_of(&feet, u, v) / ground,
+                                          .rim = sides == 15}
                         : (struct ending){0};
 }
 
@@ -127,7 +148,7 @@ whit_up up_guess(const struct scene *scene, bool z_usual)
     /* Programs with z upwards put the ground at z = 0. */
     bool grounded = fabs(shape.lo[2]) <= SLAB * extent[2] && fabs(shape.lo[1]) > SLAB * extent[1];
     bool stands = (z.flat >= STANDS && y.flat < HARDLY) || (z.low >= FLOOR && y.low < HARDLY) ||
-                  (z.feet >= FLOOR && y.feet < EDGE);
+                  (z.feet >= FLOOR && !z.rim && y.feet < EDGE);
     return !board && grounded && stands ? WHIT_UP_Z : WHIT_UP_Y;
 }
 

@@ -77,6 +77,17 @@ TEST(what_stands_on_feet_is_turned)
     assert_int_equal(guess_table(true, -0.5f), WHIT_UP_Y);
 }
 
+/* A half shell, such as a mask, whose rim is at z = 0. */
+TEST(what_ends_in_a_rim_keeps_standing)
+{
+    own_scene *scene = scene_begin(NULL, "test");
+    struct scene_mesh shell = mesh_icosphere(1, 3);
+    for (uint32_t k = 0; k < shell.vertex_count; ++k)
+        shell.positions[3 * (size_t)k + 2] = fabsf(shell.positions[3 * (size_t)k + 2]);
+    scene_put(scene, shell, NULL);
+    assert_int_equal(up_guess(scene, false), WHIT_UP_Y);
+}
+
 TEST(boards_keep_standing_and_floors_lie)
 {
     assert_int_equal(guess(mesh_plane(4), true, false), WHIT_UP_Y);
