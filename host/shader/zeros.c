@@ -1,8 +1,16 @@
 #include "shader/zeros.h"
 
 /* An array of so many bytes is set by a loop: drivers make stores of a constant's elements, and
-   take time by the square of their number. CHUNK: elements in one iteration. */
-enum { LOOP_BYTES = 256, CHUNK = 16 };
+   take time by the square of their number. An iteration sets LOOP_BYTES, since drivers limit
+   iterations, too. */
+enum { LOOP_BYTES = 256 };
+
+/* The number of elements that an iteration sets. */
+static uint32_t chunk_of(const struct spv_module *m, uint32_t element)
+{
+    uint64_t bytes = spv_size(m, element);
+    return bytes > 0 && bytes < LOOP_BYTES ? (uint32_t)(LOOP_BYTES / bytes) : 1;
+}
 
 /* The number of elements of an array that a loop sets; 0: it is none. */
 static uint32_t looped(const struct spv_module *m, uint32_t pointer)
@@ -13,7 +21,7 @@ static uint32_t looped(const struct spv_module *m, uint32_t pointer)
         type = spv_def(m, def[3]);
     if (!type || spv_op(type) != OP_TYPE_ARRAY || !spv_constant_value(m, type[3], &count))
         return 0;
-    return count >= CHUNK && spv_size(m, def[3]) >= LOOP_BYTES ? count : 0;
+    return spv_size(m, def[3]) >= LOOP_BYTES ? count : 0;
 }
 
 bool zeros_begin(struct zeros *z, struct spv_module *m, const uint32_t *words)
@@ -51,7 +59,7 @@ static void put_loop(const struct zeros *z, struct spv_module *m, uint32_t array
     uint32_t u = spv_uint(m), header = m->next_id++, test = m->next_id++, body = m->next_id++,
              next = m->next_id++, merge = m->next_id++, i = m->next_id++, goes_on = m->next_id++,
              more = m->next_id++;
-    uint32_t whole = count - count % CHUNK;
+    uint32_t chunk = chunk_of(m, element), whole = count - count % chunk;
     SPV_EMIT(m, OP_STORE, z->index, spv_constant(m, u, 0));
     SPV_EMIT(m, OP_BRANCH, header);
     SPV_EMIT(m, OP_LABEL, header);
@@ -62,14 +70,14 @@ static void put_loop(const struct zeros *z, struct spv_module *m, uint32_t array
     SPV_EMIT(m, OP_U_LESS_EQUAL, spv_bool(m), goes_on, i, spv_constant(m, u, whole - 1));
     SPV_EMIT(m, OP_BRANCH_CONDITIONAL, goes_on, body, merge);
     SPV_EMIT(m, OP_LABEL, body);
-    for (uint32_t k = 0; k < CHUNK; ++k) {
+    for (uint32_t k = 0; k < chunk; ++k) {
         uint32_t at = m->next_id++;
         SPV_EMIT(m, OP_I_ADD, u, at, i, spv_constant(m, u, k));
         put_element(m, array, element, at);
     }
     SPV_EMIT(m, OP_BRANCH, next);
     SPV_EMIT(m, OP_LABEL, next);
-    SPV_EMIT(m, OP_I_ADD, u, more, i, spv_constant(m, u, CHUNK));
+    SPV_EMIT(m, OP_I_ADD, u, more, i, spv_constant(m, u, chunk));
     SPV_EMIT(m, OP_STORE, z->index, more);
     SPV_EMIT(m, OP_BRANCH, header);
     SPV_EMIT(m, OP_LABEL, merge);

@@ -195,6 +195,9 @@ void zeros(uint seed)
     for (int k = 0; k < 2; k++) check(sum(int(seed) + k) == 0.0);
 }
 END
+    post_of_calls='vec3 post(ivec2 at, vec3 color) { for (int i = 0; i < 2000; i++) color += f(i); return color; }'
+    echo "float f(int n) { float a[1024]; a[n % 1024] = 1.0; return a[n * 7 % 1024]; } $post_of_calls" >calls.glsl
+    expect 0 "an array is set in few of the iterations that a driver allows" render "$CUBE" --size 8x8 --quiet --shader calls.glsl -o calls.png
     expect 0 "variables in each call" shader zeros.glsl
     check "begin as 0, large arrays too" grep -q "test zeros: passed, 1 check of 4096 seeds" "$OUT/stdout"
     expect 1 "a slider in tests" shader tests.glsl --set bands=4
