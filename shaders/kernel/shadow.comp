@@ -54,8 +54,10 @@ void face_light(uint r, bool alive, gpu_light light, uint item, uint point)
 
 EmitterSum emitter_of[SPEC_PACKET_RAYS];
 vec3 sum_of[SPEC_PACKET_RAYS], open_of[SPEC_PACKET_RAYS]; // of the current light
-vec4 own_of[SPEC_PACKET_RAYS];  // the ray's sum so far
-vec3 seen_of[SPEC_PACKET_RAYS]; // of a shadow catcher: its light so far without shadows
+// With several lights: the ray's sum so far, and of a shadow catcher its light so far without
+// shadows. With one: what it adds to both, which are read when they are stored, as values that are
+// kept during traversal take time.
+vec3 own_of[SPEC_PACKET_RAYS], seen_of[SPEC_PACKET_RAYS];
 uint rays_of[SPEC_PACKET_RAYS], status_of[SPEC_PACKET_RAYS];
 
 void add_arrival(uint r, gpu_light light, uint point)
@@ -86,17 +88,13 @@ bool is_catcher(uint r)
     return SPEC_CATCHERS != 0u && (lit_of[r].flags & LIT_CATCHER) != 0u;
 }
 
-void fetch_own(uint r, bool alive)
+vec3 fetch_seen(uint r)
 {
-    if (!alive)
-        return;
-    own_of[r] = fetch_sum(lit_of[r].id);
-    if (is_catcher(r))
-        seen_of[r] = uintBitsToFloat(hit_rows[lit_of[r].id * HIT_ROWS].xyz);
+    return uintBitsToFloat(hit_rows[lit_of[r].id * HIT_ROWS].xyz);
 }
 
 // Adds the light of all points of the current light to the ray's sum.
-void add_light(uint r, bool alive, gpu_light light)
+void add_light(uint r, gpu_light light)
 {
     vec3 sum = sum_of[r], open = open_of[r];
     if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && is_flat(light)) {
@@ -104,19 +102,19 @@ void add_light(uint r, bool alive, gpu_light light)
         sum += emitter_light(light, lit_of[r], emitter_of[r], emitter_open);
         open += emitter_open;
     }
-    if (SPEC_LIGHTS_EACH == 1u) // not earlier: values kept during traversal take time
-        fetch_own(r, alive);
-    own_of[r].rgb += sum;
-    if (is_catcher(r))
-        seen_of[r] += open;
+    own_of[r] = SPEC_LIGHTS_EACH > 1u ? own_of[r] + sum : sum;
+    if (SPEC_CATCHERS != 0u)
+        seen_of[r] = SPEC_LIGHTS_EACH > 1u ? seen_of[r] + open : open;
 }
 
 void store_own(uint r)
 {
     uint id = lit_of[r].id;
-    store_sum(id, own_of[r].rgb, floatBitsToUint(own_of[r].w));
+    vec4 own = fetch_sum(id);
+    store_sum(id, SPEC_LIGHTS_EACH > 1u ? own_of[r] : own.rgb + own_of[r], floatBitsToUint(own.w));
     if (is_catcher(r))
-        hit_rows[id * HIT_ROWS].xyz = floatBitsToUint(seen_of[r]);
+        hit_rows[id * HIT_ROWS].xyz =
+            floatBitsToUint(SPEC_LIGHTS_EACH > 1u ? seen_of[r] : fetch_seen(r) + seen_of[r]);
 }
 
 // Traces the shadow rays to all points of the current light.
@@ -160,7 +158,9 @@ void main()
         lit_of[r] = fetch_lit(alive[r] ? lit : 0u);
         rays_of[r] = status_of[r] = 0u;
         if (SPEC_LIGHTS_EACH > 1u)
-            fetch_own(r, alive[r]);
+            own_of[r] = fetch_sum(lit_of[r].id).rgb;
+        if (SPEC_LIGHTS_EACH > 1u && is_catcher(r))
+            seen_of[r] = fetch_seen(r);
     }
     uint end = chunk.light + chunk.lights;
     light_index = chunk.light;
@@ -168,7 +168,7 @@ void main()
     do {
         gpu_light light = fetch_light(light_index);
         light_up(light, alive, item);
-        EACH_RAY add_light(r, alive[r], light);
+        EACH_RAY add_light(r, light);
         light_index++;
         more = SPEC_LIGHTS_EACH > 1u && light_index < end;
     } while (another_iteration(more));
