@@ -70,13 +70,11 @@ void *array_alloc_lines(size_t count, size_t element_bytes)
     size_t bytes;
     if (!product(count, element_bytes, &bytes))
         return NULL;
-    bytes = (bytes + 63) & ~(size_t)63;
     bool large = bytes >= LARGE_PAGE_BYTES / 2;
-    if (large && bytes < LARGE_PAGE_BYTES)
-        bytes = LARGE_PAGE_BYTES;
-    void *memory = aligned_alloc(large ? LARGE_PAGE_BYTES : 64, bytes);
+    size_t line = large ? LARGE_PAGE_BYTES : 64; /* C wants a multiple of it */
+    void *memory = aligned_alloc(line, (bytes + line - 1) & ~(line - 1));
     if (memory && large)
-        platform_expect_much(memory, bytes);
+        platform_expect_much(memory, bytes < LARGE_PAGE_BYTES ? LARGE_PAGE_BYTES : bytes);
     return memory;
 }
 
