@@ -80,12 +80,6 @@ alone: press I | compare.mode = off
 do put blue.new live/part/tint.glsl && put violet.new live/part/tint.glsl
 until shader.hash = $violet
 twice: | frame.pixels not as mended | error =
-do mv live/part live/away
-until error
-gone: | error has part/tint.glsl | frame.pixels as twice
-do mv live/away live/part
-until error = $NONE
-back: | frame.pixels as twice | shader.hash = $violet
 prices: press P | toast has the reference, which has no --shader | frame.pixels as twice
 effects: press X | toast as prices | frame.pixels as twice
 panel: press X, press Tab
@@ -93,6 +87,12 @@ off: choose stepped | render has --set stepped=off | frame.pixels not as twice |
 on: choose stepped | render has --set stepped=on | frame.pixels as twice
 height: press F3 | render has --aov height | frame.pixels not as twice | frame.ids as on
 colour: press F3 | frame.pixels as on | frame.ids as on
+do mv live/part live/away
+until error
+gone: | error has part/tint.glsl | frame.pixels as colour
+do mv live/away live/part
+until error = $NONE
+back: | frame.pixels as colour | shader.hash = $violet
 END
     check "each error is said once" test "$(grep -cE 'error: live/part/(tint.glsl:(2:11|3|4:11|5:9)|deep.glsl:2:14): ' "$OUT/stderr")" -eq 5
     check "and nothing else but the folder that was gone" test "$(grep -c error: "$OUT/stderr")" -eq 6
