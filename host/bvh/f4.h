@@ -20,6 +20,7 @@ static inline f4 f4_load(const float *p)
     return (f4)((i4)a & (i4){-1, -1, -1, 0});
 }
 
+/* Three floats at any address, with 0 in the last lane. */
 static inline f4 f4_three(const float p[3])
 {
     return (f4){p[0], p[1], p[2], 0.0f};

@@ -215,8 +215,8 @@ static void report_lacking(struct compilation *c, const struct spv_module *m,
     report(c, m->place, why);
 }
 
-/* Where the function is whit's own, such as the one that calls all tests, the error is about the
-   whole file. */
+/* Reports a function that is too large. The error names the function if it is the user's; one of
+   whit's own, such as the one that calls all tests, stands for the whole file. */
 static void report_large(struct compilation *c, const struct spv_module *m,
                          const uint32_t *function)
 {

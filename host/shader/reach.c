@@ -4,7 +4,7 @@
 
 #define HAS(name) SHADER_REACHES_##name
 
-/* What a material lets through, also for shadow rays, is computed from these. */
+/* Kernels compute from these values how much light a material lets through, for shadow rays too. */
 #define FILTERS   (HAS(TEXTURES) | HAS(VERTEX_COLORS) | HAS(METAL_ROUGH))
 
 /* Functions of hook/interface.glsl, by the start of their names as glslang writes them, and what

@@ -236,7 +236,7 @@ struct gpu_chunk {
     gpu_uint before_post; /* HOOK_POST: in the pixel buffer, first pixel as it is before post() */
     gpu_uint aovs_alone;  /* 1: writes the aovs of pixels, no colours */
     gpu_uint tile_slot;   /* slot 0 among those of the tile, of which the chunk may be a part */
-    gpu_uint lights;      /* that the dispatch is for, from `light` on */
+    gpu_uint lights;      /* how many the dispatch adds, from `light` on */
     gpu_uint unused;
 };
 GPU_ASSERT_SIZE(gpu_chunk, 120)
