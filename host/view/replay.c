@@ -183,22 +183,6 @@ static bool minimise(struct view *view, bool wanted)
     return !replay->asked;
 }
 
-/* Clicks on the item with this label; false: there is none yet. */
-static bool choose(struct view *view, const char *wanted)
-{
-    const char *label;
-    float x, y;
-    uint32_t i = 0;
-    while (ui_item(i, &label, &x, &y) && strcmp(label, wanted) != 0)
-        ++i;
-    if (view->dirty || !ui_item(i, &label, &x, &y))
-        return false;
-    input_event(view, &(struct view_event){.kind = EVENT_MOVE, .x = (double)x, .y = (double)y});
-    for (int down = 1; down >= 0; --down)
-        input_event(view, &(struct view_event){.kind = EVENT_BUTTON, .down = down});
-    return true;
-}
-
 /* Handles an event; false: it has to wait. */
 static bool replay_event(struct view *view, const struct view_event *event)
 {
@@ -232,7 +216,7 @@ static bool replay_event(struct view *view, const struct view_event *event)
         view->dirty = true;
         return true;
     case EVENT_CHOOSE:
-        return choose(view, event->path);
+        return false; /* replay_choose handles it */
     case EVENT_MINIMISE:
     case EVENT_RESTORE:
         return minimise(view, event->kind == EVENT_MINIMISE);
@@ -251,6 +235,28 @@ void replay_step(struct view *view)
     while (replay && replay->at < replay->list.count && !view->quit && !view->shot[0] &&
            replay_event(view, &replay->list.events[replay->at]))
         ++replay->at;
+}
+
+bool replay_choose(struct view *view)
+{
+    struct replay *replay = view->replay;
+    const char *label;
+    float x, y;
+    uint32_t i = 0;
+    if (!replay || replay->at == replay->list.count || view->dirty || view->quit)
+        return false;
+    const struct view_event *event = &replay->list.events[replay->at];
+    if (event->kind != EVENT_CHOOSE)
+        return false;
+    while (ui_item(i, &label, &x, &y) && strcmp(label, event->path) != 0)
+        ++i;
+    if (!ui_item(i, &label, &x, &y))
+        return false;
+    ++replay->at;
+    input_event(view, &(struct view_event){.kind = EVENT_MOVE, .x = (double)x, .y = (double)y});
+    for (int down = 1; down >= 0; --down)
+        input_event(view, &(struct view_event){.kind = EVENT_BUTTON, .down = down});
+    return true;
 }
 
 double replay_wait_s(struct view *view)

@@ -9,6 +9,9 @@ struct view;
 WHIT_CHECK whit_result replay_open(struct view *view);
 /* Feeds the events that are due, and moves the replay's clock. */
 void replay_step(struct view *view);
+/* Clicks on the item that a `choose` names; false: it is not due, or there is no such item yet. To
+   be called between two drawings of the window without anything that may move the item. */
+bool replay_choose(struct view *view);
 /* Seconds until the next event is due; HUGE_VAL: there is none. */
 double replay_wait_s(struct view *view);
 bool replay_is_over(const struct view *view);

@@ -394,6 +394,15 @@ static void ask(struct view *view)
         engine_stop_reload(view->engine);
 }
 
+/* One drawing presses the button and the next releases it. In between the engine is asked for what
+   the press may have changed, and nothing happens that may move the item. */
+static whit_result draw_click(struct view *view)
+{
+    whit_result result = draw_window(view);
+    ask(view);
+    return result == WHIT_OK ? draw_window(view) : result;
+}
+
 static whit_result step(struct view *view)
 {
     bool goes_on = input_step(view, view_now_ms(view));
@@ -425,7 +434,7 @@ static whit_result step(struct view *view)
         view->dirty = true; /* draws on until params->frames pictures were shown */
     if (result == WHIT_OK && view->dirty)
         result = draw_window(view);
-    return result;
+    return result == WHIT_OK && replay_choose(view) ? draw_click(view) : result;
 }
 
 /* Replays use Dear ImGui's own font, which is the same on every machine. */
