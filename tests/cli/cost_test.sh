@@ -285,6 +285,7 @@ mkdir "$OUT/files"
 refuse 2 "no scene" "a scene is missing" cost
 refuse 2 "no such scene" "missing.json" cost "$OUT/missing.json" --quiet
 refuse 2 "no such knob" "did you mean .fresnel." cost "$CUBE" --knobs fresnal
+refuse 2 "a knob of another name now" "is .shadows. now" cost "$CUBE" --knobs aa,tinted-shadows
 refuse 2 "no error at all" "a number from" cost "$CUBE" --under 0
 refuse 2 "no such metric" "flip, rmse" cost "$CUBE" --metric psnr
 refuse 2 "too many scenes" "too many" cost "$CUBE" "$CUBE"

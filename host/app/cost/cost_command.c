@@ -34,6 +34,8 @@ static bool read_knobs(const struct setting *setting, const char *list, void *re
         size_t length = strcspn(at, ",");
         snprintf(name, sizeof name, "%.*s", (int)(length < 31 ? length : 31), at);
         uint32_t found = knob_find(name);
+        if (strcmp(name, "tinted-shadows") == 0)
+            return setting_refuse(why, ": knob `%s` is `shadows` now", name);
         if (found == WHIT_NONE) {
             const char *nearest = text_nearest(name, names, KNOBS);
             return setting_refuse(why, ": there is no knob `%s`%s%s%s", name,
