@@ -84,10 +84,6 @@ static bool writes_wide_rows(const struct device *device)
     return info->kind == WHIT_DEVICE_CPU && info->int64 && !slow;
 }
 
-/* In scenes of more than LIGHT_LISTS lights, a dispatch adds so many: a lit hit is read, and its
-   sum stored, once for all of them. More would gain little, and a submission may take 100 ms. */
-enum { LIGHTS_EACH = 8 };
-
 /* A user's shape is asked about one light at a time, and so is a probed pixel. The many rays to a
    light with an area, rays without trees, and the integers of NUMERICS_EXACT can fill an
    invocation's loops, whose iterations drivers limit. Where others do, stages_sample() goes on with

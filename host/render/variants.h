@@ -5,6 +5,11 @@
 #include "device/pipeline.h"
 #include "render/renderer.h"
 
+/* SPEC_LIGHTS_EACH in scenes of more than LIGHT_LISTS lights: a lit hit is read, and its sum
+   stored, once for all lights of a dispatch. More would gain little, and a submission may take 100
+   ms. */
+enum { LIGHTS_EACH = 8 };
+
 struct gpu_spec variant_spec(const struct target *target);
 /* The same, with every effect. */
 struct gpu_spec variant_general_spec(const struct target *target);

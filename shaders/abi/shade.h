@@ -237,7 +237,7 @@ struct gpu_chunk {
     gpu_uint aovs_alone;  /* 1: writes the aovs of pixels, no colours */
     gpu_uint tile_slot;   /* slot 0 among those of the tile, of which the chunk may be a part */
     gpu_uint lights;      /* how many the dispatch adds, from `light` on */
-    gpu_uint unused;
+    gpu_uint pad;
 };
 GPU_ASSERT_SIZE(gpu_chunk, 120)
 

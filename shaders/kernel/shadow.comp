@@ -118,7 +118,7 @@ void store_own(uint r)
 }
 
 // Traces the shadow rays to all points of the current light.
-void light_up(gpu_light light, bool alive[SPEC_PACKET_RAYS], uint item[SPEC_PACKET_RAYS])
+void trace_shadow_rays(gpu_light light, bool alive[SPEC_PACKET_RAYS], uint item[SPEC_PACKET_RAYS])
 {
     const bool flats = (SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u;
     uint points = flats && is_flat(light) ? turns_each() : 1u;
@@ -167,7 +167,7 @@ void main()
     bool more = false;
     do {
         gpu_light light = fetch_light(light_index);
-        light_up(light, alive, item);
+        trace_shadow_rays(light, alive, item);
         EACH_RAY add_light(r, light);
         light_index++;
         more = SPEC_LIGHTS_EACH > 1u && light_index < end;

@@ -2,6 +2,7 @@
 #include <float.h>
 
 #include "picture_fixture.h"
+#include "render/variants.h"
 #include "unit.h"
 
 static const double pi = 3.14159265358979323846;
@@ -373,7 +374,8 @@ TEST(many_lights_are_added_in_their_order)
         assert_same_image("the sum of pictures of one light", &all.color, &sum.color);
         dispatches[flat] = all.stats.dispatches;
     }
-    assert_int_equal(dispatches[1] - dispatches[0], LAMPS - (LAMPS + 7) / 8);
+    assert_int_equal(dispatches[1] - dispatches[0],
+                     LAMPS - (LAMPS + LIGHTS_EACH - 1) / LIGHTS_EACH);
 }
 
 /* Slivers in the way of rays, which go through the boxes of all and hit none, under several lamps.
