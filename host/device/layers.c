@@ -4,7 +4,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-/* Writers come first: a thread that creates a device would else wait as long as other threads go on
+/* Writers come first. Otherwise a thread that creates a device waits as long as other threads go on
    calling Vulkan. Nobody is blocked for ever, since no call of Vulkan waits for a call in another
    thread. */
 static pthread_rwlock_t lock = PTHREAD_RWLOCK_WRITER_NONRECURSIVE_INITIALIZER_NP;

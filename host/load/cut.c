@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "load/format.h"
 
-/* Writes keywords in upper case, in which assimp does not know them, if they stand at `at`. */
+/* Writes the keyword at `at`, if there is one, in upper case: assimp does not know it then. */
 static void hide_keyword(char *at)
 {
     static const char *const keywords[] = {"facet", "vertex", "solid", "loop"};

@@ -178,8 +178,8 @@ static const char *clip_name(const json_t *animations, uint32_t index)
     return name ? name : "";
 }
 
-/* The animation that is played alone, or first. False: there is none of the name or number that is
-   wanted. */
+/* Finds the animation that is played alone, or first. False: `wanted` is the name or the number of
+   none. */
 static bool find_clip(const struct gltf *gltf, const char *wanted, uint32_t *index)
 {
     const json_t *animations = json_object_get(gltf->root, "animations");

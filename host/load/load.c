@@ -151,8 +151,9 @@ whit_result load_check(const whit_log *log, const char *path, const whit_load_pa
         return WHIT_OK;
     if ((uint32_t)params->up > WHIT_UP_AUTO || (uint32_t)params->lights > WHIT_LIGHTS_KEY)
         return log_failure(log, WHIT_ERROR_USAGE,
-                           "%s: up or lights: a value of an enumeration that there is none of",
-                           path);
+                           "%s: up %d or lights %d: the enumerations have 0 to %u and 0 to %u",
+                           path, (int)params->up, (int)params->lights, WHIT_UP_AUTO,
+                           WHIT_LIGHTS_KEY);
     if (params->import_limit_s >= 0.0 && params->time_limit_s >= 0.0)
         return WHIT_OK;
     return log_failure(log, WHIT_ERROR_USAGE,

@@ -15,8 +15,9 @@ WHIT_CHECK whit_result camera_frame(const whit_log *log, const struct scene_pose
                                     const whit_camera *wanted, uint32_t width, uint32_t height,
                                     struct gpu_frame *frame, uint32_t *kind);
 
-/* The area of the pixel in the middle of the picture, perpendicular to its ray at distance 1 from
-   the eye; orthographic: in world units. texel_area of bind/camera.glsl starts from it. */
+/* The area, in world units, that the pixel in the middle of the picture covers perpendicular to its
+   ray: at distance 1 from the eye, or anywhere if the camera is orthographic. texel_area of
+   bind/camera.glsl starts from it. */
 double camera_pixel_area(const struct gpu_frame *frame, uint32_t kind);
 
 /* bind/camera.glsl's camera_ray in C, bit for bit: for pixel (x, y), counted from the upper left,

@@ -130,7 +130,7 @@ static whit_result upload_trees(struct renderer *renderer)
     return result == WHIT_OK ? upload_instances(renderer) : result;
 }
 
-/* Writes one record of `words` words for a triangle. */
+/* Writes what a triangle has in one part of the shading rows to `out`, which is zeroed. */
 typedef void (*fill_triangle)(const struct scene *scene, const struct scene_mesh *mesh,
                               uint32_t triangle, uint32_t *out);
 

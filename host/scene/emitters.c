@@ -148,7 +148,7 @@ static bool add_sample(struct scene *scene, const struct emitter *emitter, doubl
     scene_mesh_placed_corners(&scene->meshes[instance->mesh], emitter->triangle, &local, corners);
     double twice_area = normal_of(corners, normal);
     double side = affine_determinant(&local) < 0.0 ? -1.0 : 1.0;
-    /* A one-sided sample lies a little above its surface, which would else shadow it. */
+    /* A one-sided sample lies a little above its surface, which would otherwise shadow it. */
     double lift = light.two_sided ? 0.0 : 1e-4 * sqrt(twice_area);
     point_in(corners, u, v, light.position);
     for (int i = 0; i < 3; ++i) {

@@ -14,7 +14,7 @@ struct glslang_question {
     char own[GLSLANG_OWN_BYTES]; /* tag of whit's own files, see expand.h */
     bool trust;
     bool names;           /* shader_request.names */
-    const uint32_t *base; /* NULL: there is none */
+    const uint32_t *base; /* shader_request.base */
     size_t base_words;
 };
 

@@ -137,8 +137,8 @@ static bool belongs(const struct walk *walk, uint32_t triangle, uint32_t node)
     return false;
 }
 
-/* Adds the area of the triangle inside the boxes of `node` and of the nodes below it, of those to
-   whose subtrees it does not belong. */
+/* Adds to *sum, for `node` and each node below it whose subtree does not contain the triangle, the
+   area of the triangle inside the node's box: once, or in a leaf once for each of its triangles. */
 static void add_overlap(const struct walk *walk, uint32_t triangle, uint32_t node, double *sum)
 {
     const struct gpu_bvh_node *at = &walk->nodes[node];

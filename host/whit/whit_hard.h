@@ -141,8 +141,8 @@ typedef struct whit_judgement {
     double ulp_median, ulp_999, ulp_max; /* ulp_999: the 99.9th percentile */
 } whit_judgement;
 /* `hits`: one for each of the rays, in their order, found at `numerics`. WHIT_ERROR_STATUS where
-   the judge's own traversals cannot be trusted, WHIT_ERROR_USAGE for a level that there is none
-   of. */
+   the judge's own traversals cannot be trusted, WHIT_ERROR_USAGE if `numerics` is none of
+   its values. */
 WHIT_CHECK whit_result whit_judge_hits(const whit_judge *judge, whit_numerics numerics,
                                        const whit_hit *hits, whit_judgement *out);
 
