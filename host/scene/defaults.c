@@ -47,7 +47,8 @@ static void note_viewpoint(struct scene *scene, const struct viewpoint *viewpoin
                    "is a room");
     else
         scene_note(scene, SCENE_NOTE_INFO, "no camera in the file: one was added that shows %s%s",
-                   viewpoint->part ? "the small part of it that nearly all triangles are in"
+                   viewpoint->part ? "the small part of it that nearly all triangles are in, floor "
+                                     "and sky aside"
                                    : "all of it",
                    places[viewpoint->kind]);
 }
@@ -89,8 +90,9 @@ static whit_result add_lamp(struct scene *scene, const char *name, const double 
     return scene_add_light(scene, light) == SCENE_NONE ? WHIT_ERROR_MEMORY : WHIT_OK;
 }
 
-/* Lights a room, whose walls keep out light from outside: one lamp at the eye, and a stronger one
-   ahead, to the left and above, so that its shadows are seen. `why`: beginning of the note. */
+/* Lights a room, whose walls keep out light from outside, or what is under a modelled sky: one lamp
+   at the eye, and a stronger one to the left and above, so that its shadows are seen. `why`:
+   beginning of the note. */
 static whit_result add_room_lights(struct scene *scene, const struct viewpoint *viewpoint,
                                    const char *why)
 {
@@ -100,7 +102,8 @@ static whit_result add_room_lights(struct scene *scene, const struct viewpoint *
         result = add_lamp(scene, "default lamp", viewpoint->eye, 0.3f, 0.98f * 0.3f, 0.94f * 0.3f);
     if (result == WHIT_OK)
         scene_note(scene, SCENE_NOTE_INFO,
-                   "%s: two lamps were added, at the camera and ahead of it to the left", why);
+                   "%s: two lamps were added, at the camera and %s to the left", why,
+                   viewpoint->kind == VIEWPOINT_INSIDE ? "ahead of it" : "above it");
     return result;
 }
 
@@ -179,7 +182,7 @@ static whit_result add_emitters(struct scene *scene, const struct scene_pose *po
 static whit_result add_own_light(struct scene *scene, const struct scene_pose *pose,
                                  const struct viewpoint *viewpoint, const char *why)
 {
-    if (viewpoint->kind == VIEWPOINT_INSIDE)
+    if (viewpoint->kind == VIEWPOINT_INSIDE || viewpoint->under_sky)
         return add_room_lights(scene, viewpoint, why);
     struct scene_camera camera = pose->camera_count ? pose->cameras[0] : scene->cameras[0];
     scene_note(scene, SCENE_NOTE_INFO,

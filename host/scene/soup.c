@@ -12,9 +12,6 @@
 #define EVEN          17  /* even steps of an animation at which the view is to show everything */
 #define KEYS_MAX      240 /* times of keys at which it is to, too */
 #define KEYS_SORTED   (1u << 18)
-#define BINS          1024
-#define TAIL          0.025 /* share of triangles that a core leaves out at either end of an axis */
-#define PART          0.25  /* largest size of a part, in diagonals of the scene */
 #define MOVING_MAX    10000 /* animations of more instances are fitted at time 0 alone */
 
 static void put_corner(const struct soup *soup, const struct affine *matrix, const double p[3],
@@ -72,7 +69,7 @@ static void add_boxes(const struct scene *scene, const struct scene_pose *pose, 
     }
 }
 
-static void measure(const double lo[3], const double hi[3], struct soup *soup)
+void soup_measure(const double lo[3], const double hi[3], struct soup *soup)
 {
     double radius2 = 0.0;
     bool empty = lo[0] > hi[0];
@@ -219,7 +216,7 @@ static uint32_t direction_cell(const float p[3])
     return ((2 * axis + (p[axis] < 0.0f)) * SOUP_CELLS + y) * SOUP_CELLS + x;
 }
 
-static void find_outline(struct soup *soup)
+void soup_find_outline(struct soup *soup)
 {
     float farthest[6 * SOUP_CELLS * SOUP_CELLS];
     for (uint32_t i = 0; i < 6 * SOUP_CELLS * SOUP_CELLS; ++i)
@@ -246,129 +243,6 @@ void soup_finish(struct soup *soup)
     free(soup->pictured);
 }
 
-/* --- narrow --------------------------------------------------------------------------------- */
-
-struct part {
-    double lo[3], hi[3];
-};
-
-static double size_of(const struct part *part)
-{
-    double size[3];
-    for (int k = 0; k < 3; ++k)
-        size[k] = fmax(part->hi[k] - part->lo[k], 0.0);
-    return double3_length(size);
-}
-
-/* Sets the core's interval along an axis: it holds the centroids of all triangles but the share
-   TAIL of them at either end. */
-static void find_core(const struct soup *soup, int axis, struct part *core)
-{
-    uint32_t bins[BINS] = {0}, below = 0, tail = (uint32_t)(TAIL * soup->count), bin = 0;
-    for (size_t t = 0; t < soup->count; ++t) {
-        const float *p = soup->corners + 9 * t + axis;
-        float place = 0.5f * BINS * (1.0f + (p[0] + p[3] + p[6]) / 3.0f);
-        ++bins[(uint32_t)fminf(fmaxf(place, 0.0f), BINS - 1)];
-    }
-    while (below + bins[bin] <= tail)
-        below += bins[bin++];
-    core->lo[axis] = 2.0 * bin / BINS - 1.0;
-    for (bin = BINS, below = 0; below + bins[bin - 1] <= tail; --bin)
-        below += bins[bin - 1];
-    core->hi[axis] = 2.0 * bin / BINS - 1.0;
-}
-
-static bool is_in(const float *corners, const struct part *part)
-{
-    bool in = true;
-    for (int i = 0; i < 9; ++i)
-        in = in && (double)corners[i] >= part->lo[i % 3] && (double)corners[i] <= part->hi[i % 3];
-    return in;
-}
-
-/* The box of all triangles whose corners are in the core, or outside of it by no more than `around`
-   along each axis. *count: how many there are. */
-static struct part find_box(const struct soup *soup, struct part core, double around,
-                            uint32_t *count)
-{
-    struct part part;
-    double3_no_box(part.lo, part.hi);
-    for (int k = 0; k < 3; ++k) {
-        core.lo[k] -= around;
-        core.hi[k] += around;
-    }
-    *count = 0;
-    for (size_t t = 0; t < soup->count; ++t) {
-        const float *p = soup->corners + 9 * t;
-        if (!is_in(p, &core))
-            continue;
-        ++*count;
-        for (int i = 0; i < 9; i += 3)
-            double3_grow_box(part.lo, part.hi,
-                             (double[]){(double)p[i], (double)p[i + 1], (double)p[i + 2]});
-    }
-    return part;
-}
-
-/* The part that nearly all triangles are in. Long triangles, as those of a cone, reach farther
-   beyond the core, which is one of centroids. False: there is no such part that is small. */
-static bool find_part(const struct soup *soup, struct part *part)
-{
-    struct part core;
-    uint32_t count = 0;
-    for (int k = 0; k < 3; ++k)
-        find_core(soup, k, &core);
-    for (double reach = 0.5; reach <= 4.0; reach *= 2.0) {
-        *part = find_box(soup, core, reach * size_of(&core), &count);
-        if (count >= (1.0 - 6.0 * TAIL) * soup->count)
-            return size_of(part) > 0.0 && size_of(part) <= PART * 2.0;
-    }
-    return false;
-}
-
-/* Appends to `narrow` the triangles that are in the part, or (`in` false) the others. */
-static void take_run(const struct soup *soup, const struct part *part, bool in, struct soup *narrow)
-{
-    for (size_t t = 0; t < soup->count; ++t) {
-        const float *p = soup->corners + 9 * t;
-        if (is_in(p, part) != in)
-            continue;
-        narrow->pictured[narrow->count] = soup->pictured[t];
-        float *out = narrow->corners + 9 * (size_t)narrow->count++;
-        for (int i = 0; i < 9; ++i)
-            out[i] = (float)(((double)p[i] - narrow->centre[i % 3]) / narrow->radius);
-    }
-}
-
-whit_result soup_narrow(const struct soup *soup, struct soup *narrow)
-{
-    *narrow = (struct soup){0};
-    if (!soup->whole || !soup->count || soup->fit_count != soup->count)
-        return WHIT_OK;
-    struct part part;
-    if (!find_part(soup, &part))
-        return WHIT_OK;
-    narrow->corners = array_alloc(soup->count, 9 * sizeof *narrow->corners);
-    narrow->pictured = array_alloc(soup->count, sizeof *narrow->pictured);
-    if (!narrow->corners || !narrow->pictured) {
-        soup_finish(narrow);
-        *narrow = (struct soup){0};
-        return WHIT_ERROR_MEMORY;
-    }
-    measure(part.lo, part.hi, narrow);
-    take_run(soup, &part, true, narrow);
-    narrow->fit_count = narrow->count;
-    take_run(soup, &part, false, narrow);
-    narrow->whole = true;
-    for (int k = 0; k < 3; ++k)
-        narrow->centre[k] = soup->centre[k] + soup->radius * narrow->centre[k];
-    narrow->radius *= soup->radius;
-    find_outline(narrow);
-    return WHIT_OK;
-}
-
-/* --- whole ---------------------------------------------------------------------------------- */
-
 whit_result soup_init(const struct scene *scene, const struct scene_pose *pose, struct soup *soup)
 {
     struct moments moments;
@@ -382,7 +256,7 @@ whit_result soup_init(const struct scene *scene, const struct scene_pose *pose, 
     whit_result result = moments_init(scene, pose, total, &moments);
     if (result != WHIT_OK)
         return result;
-    measure(moments.lo, moments.hi, soup);
+    soup_measure(moments.lo, moments.hi, soup);
     soup->whole = total <= TRIANGLES_MAX && !spheres;
     uint32_t exact = !soup->whole                             ? 0
                      : total * moments.count <= TRIANGLES_MAX ? moments.count
@@ -403,6 +277,6 @@ whit_result soup_init(const struct scene *scene, const struct scene_pose *pose, 
     for (uint32_t i = exact; i < moments.count; ++i)
         add_boxes(scene, &moments.poses[i], soup);
     moments_finish(&moments);
-    find_outline(soup);
+    soup_find_outline(soup);
     return WHIT_OK;
 }

@@ -14,6 +14,7 @@ struct soup {
     uint32_t fit_count; /* triangles that the view has to show: may be more than `count`, by those
                            of moving instances at later times, or fewer, by soup_narrow */
     bool whole;         /* has all triangles; false: only boxes around instances, for the fit */
+    bool under_sky;     /* by soup_narrow: a sphere, or half of one, is around the part */
     double centre[3], radius, half[3];
     /* The farthest corner in each cell of a cube map of directions, enough for a first fit. */
     float outline[6 * SOUP_CELLS * SOUP_CELLS][3];
@@ -25,10 +26,13 @@ struct soup {
    triangles, or with spheres, only boxes. WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result soup_init(const struct scene *scene, const struct scene_pose *pose,
                                  struct soup *soup);
+/* Sets centre, radius and half to those of a box. */
+void soup_measure(const double lo[3], const double hi[3], struct soup *soup);
+void soup_find_outline(struct soup *soup);
 /* The same triangles in the space of the small part of the scene that nearly all of them are in,
-   such as what stands on a wide floor. The part's triangles come first, and the view is fitted to
-   them alone. `narrow` is zeroed where there is no such part, where instances move, and where
-   `soup` has only boxes. WHIT_ERROR_MEMORY. */
+   such as what stands on a wide floor or under a sky; these do not count (narrow.c). The part's
+   triangles come first, and the view is fitted to them alone. `narrow` is zeroed where there is no
+   such part, where instances move, and where `soup` has only boxes. WHIT_ERROR_MEMORY. */
 WHIT_CHECK whit_result soup_narrow(const struct soup *soup, struct soup *narrow);
 void soup_finish(struct soup *soup);
 

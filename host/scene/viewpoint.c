@@ -23,6 +23,8 @@
 #define WALLS_DEPTH  0.6
 #define SHARE_INSIDE 0.7
 #define SKY_INSIDE   0.1
+/* A small part is shown alone if nothing hides this share of it. */
+#define SHOWN_ENOUGH 0.5
 #define LAMP_AHEAD   0.45 /* share of the free distance ahead at which the lamp hangs */
 #define BOARD_DEPTH  0.15 /* a scene is a board if this share of its width and height is deeper */
 
@@ -186,8 +188,26 @@ static void place_lamp(const struct soup *soup, const struct view *view, double 
         lamp[k] += step * view->up[k];
 }
 
+/* The share of a part's pixels that nothing in front of it hides. */
+static double shown_share(const struct soup *narrow, const struct view *view)
+{
+    struct soup alone = *narrow;
+    struct sketch part, all;
+    uint32_t covered = 0, shown = 0;
+    alone.count = narrow->fit_count;
+    sketch_draw(&alone, view, &part);
+    sketch_draw(narrow, view, &all);
+    for (int y = 0; y < SKETCH_DOWN; ++y) {
+        for (int x = 0; x < SKETCH_ACROSS; ++x) {
+            covered += part.nearness[y][x] > 0.0f;
+            shown += part.nearness[y][x] > 0.0f && part.nearness[y][x] == all.nearness[y][x];
+        }
+    }
+    return covered ? (double)shown / covered : 0.0;
+}
+
 /* Chooses a view from outside, fitted to a small part of the scene if nearly all triangles are
-   there. */
+   there and nothing hides them. */
 static whit_result look_from_outside(const struct soup *soup, struct viewpoint *out)
 {
     struct soup narrow;
@@ -197,13 +217,22 @@ static whit_result look_from_outside(const struct soup *soup, struct viewpoint *
     if (result != WHIT_OK)
         return result;
     out->part = narrow.count > 0;
+    if (out->part) {
+        choose_outside(&narrow, &way, &view);
+        out->part = shown_share(&narrow, &view) >= SHOWN_ENOUGH;
+        out->under_sky = out->part && narrow.under_sky;
+    }
     const struct soup *seen = out->part ? &narrow : soup;
-    choose_outside(seen, &way, &view);
+    if (!out->part)
+        choose_outside(soup, &way, &view);
     out->kind = way >= STRAIGHT_FIRST ? VIEWPOINT_STRAIGHT
                 : way                 ? VIEWPOINT_TURNED
                                       : VIEWPOINT_CORNER;
     out->fov_y = VIEW_FOV_Y;
-    place_view(seen, &view, -double3_dot(view.eye, view.forward), out);
+    double distance = -double3_dot(view.eye, view.forward);
+    place_view(seen, &view, distance, out);
+    for (int i = 0; i < 3; ++i)
+        out->lamp[i] = out->eye[i] + 0.5 * seen->radius * distance * (view.up[i] - view.right[i]);
     soup_finish(&narrow);
     return WHIT_OK;
 }

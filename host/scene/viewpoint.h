@@ -15,9 +15,12 @@ struct viewpoint {
     enum viewpoint_kind kind;
     double eye[3], target[3]; /* world; up is +y */
     double fov_y;
-    bool part;      /* shows a small part that has nearly all triangles; false: all of the scene */
-    double lamp[3]; /* INSIDE: world position of a lamp ahead of the eye, and from there half of the
-                       free distance to the left and up */
+    bool part;      /* shows a small part that nearly all triangles are in, floor and sky aside;
+                       false: all of the scene */
+    bool under_sky; /* the part is inside of a sphere, or half of one, that keeps out light */
+    double
+        lamp[3]; /* world position of a lamp; INSIDE: ahead of the eye, and from there half of the
+                    free distance to the left and up; else to the left of the eye and above it */
 };
 
 /* Chooses by the scene's triangles at `pose`. The view fits a picture of 4:3; a wider one shows all

@@ -228,6 +228,97 @@ TEST(small_parts_with_nearly_all_triangles_fill_the_picture)
     scene_destroy(scene);
 }
 
+/* Whether whit's own camera shows only a part of the scene, which is then the ball of radius 1 at
+   (3, 1, -2). */
+static bool shows_ball(struct scene *scene)
+{
+    double forward[3], to_ball[3] = {3, 1, -2};
+    const struct scene_camera *camera = camera_of(scene, forward);
+    bool part = scene_noted(scene, "shows the small part");
+    double distance = double3_distance(camera->eye, to_ball);
+    for (int i = 0; part && i < 3; ++i)
+        assert_true(fabs(camera->eye[i] + distance * forward[i] - to_ball[i]) < 0.2);
+    assert_int_equal(part, distance < 5.0);
+    return part;
+}
+
+static struct scene *ball_and(struct scene_mesh mesh, const double at[3], uint32_t level)
+{
+    struct scene *scene = empty_scene();
+    scene_put(scene, mesh, &(struct put){.at = {at[0], at[1], at[2]}});
+    scene_put(scene, mesh_icosphere(1.0, level), &(struct put){.at = {3, 1, -2}});
+    return scene;
+}
+
+/* Floors of many triangles, and thick ones under a ball of few. The board stands on the floor
+   beside the ball, so that both are shown. */
+TEST(floors_do_not_count)
+{
+    own_scene *scene = ball_and(mesh_terrain(60, 1e-9, 60, 1), (const double[3]){0}, 1);
+    assert_true(shows_ball(scene));
+    own_scene *slab = ball_and(mesh_box(60, 0.2, 60), (const double[3]){0, -0.1, 0}, 1);
+    assert_true(shows_ball(slab));
+    own_scene *hills = ball_and(mesh_terrain(60, 8.0, 60, 1), (const double[3]){0}, 1);
+    assert_false(shows_ball(hills));
+    own_scene *two = ball_and(mesh_plane(60), (const double[3]){0}, 3);
+    scene_put(two, mesh_box(2, 6, 0.5), &(struct put){.at = {6, 3, -2}});
+    double forward[3];
+    const struct scene_camera *camera = camera_of(two, forward);
+    assert_true(scene_noted(two, "shows the small part"));
+    assert_shown(camera, forward, (const float[]){7, 6, -2}, 1.0);
+    assert_shown(camera, forward, (const float[]){2, 0, -2}, 1.0);
+}
+
+/* A ball of nearly all triangles is shown alone before a wall that faces it, between walls, and
+   beside a stray, but not at the side of a solid, nor behind a wall. */
+TEST(dense_parts_stand_for_all_only_before_a_backdrop)
+{
+    own_scene *wall =
+        ball_and(walls((const float[]){20, 10, 5}, 0x2f, false), (const double[3]){0}, 4);
+    assert_true(shows_ball(wall));
+    own_scene *court =
+        ball_and(walls((const float[]){20, 5, 20}, 0xc, true), (const double[3]){0, 5, 0}, 4);
+    assert_true(shows_ball(court));
+    own_scene *stray = ball_and(mesh_plane(1), (const double[3]){-90, 30, 0}, 4);
+    assert_true(shows_ball(stray));
+    own_scene *house = ball_and(mesh_box(30, 20, 10), (const double[3]){0, 8, -8}, 4);
+    assert_false(shows_ball(house));
+    own_scene *hidden = ball_and(mesh_box(40, 20, 0.1), (const double[3]){3, 8, -8}, 4);
+    scene_put(hidden, mesh_box(40, 20, 0.1), &(struct put){.at = {3, 8, 0.2}});
+    assert_false(shows_ball(hidden));
+}
+
+/* A ball in a closed box, or sunk into the surface of a larger ball, is under no sky. */
+TEST(solids_are_no_skies)
+{
+    own_scene *crate = ball_and(mesh_box(20, 20, 20), (const double[3]){0}, 0);
+    assert_false(shows_ball(crate));
+    own_scene *planet = ball_and(mesh_sphere(20, 32, 16), (const double[3]){0, -16, -2}, 1);
+    assert_false(shows_ball(planet));
+}
+
+/* A sphere around everything, turned inwards or not, or the upper half of one on a floor. No light
+   gets in from outside. */
+TEST(skies_do_not_count)
+{
+    for (int kind = 0; kind < 3; ++kind) {
+        struct scene_mesh sky = mesh_sphere(60, 32, 16);
+        for (uint32_t i = 0; kind != 0 && i < 3 * sky.triangle_count; i += 3) {
+            uint32_t first = sky.indices[i];
+            sky.indices[i] = sky.indices[i + 1];
+            sky.indices[i + 1] = first;
+        }
+        for (uint32_t i = 0; kind == 2 && i < sky.vertex_count; ++i)
+            sky.positions[3 * (size_t)i + 1] = fmaxf(sky.positions[3 * (size_t)i + 1], 0.0f);
+        own_scene *scene = ball_and(sky, (const double[3]){0}, 1);
+        assert_true(shows_ball(scene));
+        assert_int_equal(scene->light_count, 2);
+        assert_true(scene_noted(scene, "two lamps were added, at the camera and above it"));
+        for (int k = 0; k < 3; ++k)
+            assert_true(scene->lights[0].position[k] != scene->lights[1].position[k]);
+    }
+}
+
 /* The tips of these cones are far from the centroids of their triangles. */
 TEST(long_triangles_of_a_part_are_in_the_picture)
 {
