@@ -17,6 +17,7 @@ struct edge {
 
 struct face {
     uint32_t corners[3]; /* sorted */
+    uint32_t triangle;
 };
 
 static int compare_corners(const void *a, const void *b)
@@ -43,7 +44,9 @@ static int compare_edges(const void *a, const void *b)
 
 static int compare_faces(const void *a, const void *b)
 {
-    return compare_words(((const struct face *)a)->corners, ((const struct face *)b)->corners, 3);
+    const struct face *x = a, *y = b;
+    int order = compare_words(x->corners, y->corners, 3);
+    return order ? order : compare_words(&x->triangle, &y->triangle, 1);
 }
 
 /* Numbers vertices in `welded`, 3 per triangle; equal vertices get the same number. */
@@ -84,13 +87,15 @@ static void count_edge(struct hard_topology *topology, const struct edge *edges,
     }
 }
 
-static void count_edges(struct hard_topology *topology, const uint32_t *welded, uint32_t triangles,
-                        struct edge *edges, uint8_t *vertex_open)
+static void count_edges(struct hard_topology *topology, const uint32_t *welded,
+                        const struct face *faces, uint32_t face_count, struct edge *edges,
+                        uint8_t *vertex_open)
 {
     uint32_t count = 0;
-    for (uint32_t t = 0; t < triangles; ++t) {
+    for (uint32_t i = 0; i < face_count; ++i) {
         for (uint32_t k = 0; k < 3; ++k) {
-            uint32_t a = welded[3 * t + k], b = welded[3 * t + (k + 1) % 3];
+            const uint32_t *corners = &welded[3 * (size_t)faces[i].triangle];
+            uint32_t a = corners[k], b = corners[(k + 1) % 3];
             if (a == b)
                 continue;
             edges[count++] = (struct edge){{a < b ? a : b, a < b ? b : a}, a > b};
@@ -115,16 +120,21 @@ static void sort_three(uint32_t v[3])
             }
 }
 
-static void count_duplicates(struct hard_topology *topology, const uint32_t *welded,
-                             uint32_t triangles, struct face *faces)
+/* Finds one triangle of each set of corners; returns their number. A triangle and its copies have
+   the edges of one triangle, so that an outline is open also where the surface is there twice. */
+static uint32_t find_faces(const uint32_t *welded, uint32_t triangles, struct face *faces)
 {
+    uint32_t count = 0;
     for (uint32_t t = 0; t < triangles; ++t) {
         memcpy(faces[t].corners, &welded[3 * (size_t)t], sizeof faces[t].corners);
         sort_three(faces[t].corners);
+        faces[t].triangle = t;
     }
     qsort(faces, triangles, sizeof *faces, compare_faces);
-    for (uint32_t t = 1; t < triangles; ++t)
-        topology->duplicates += compare_faces(&faces[t], &faces[t - 1]) == 0;
+    for (uint32_t t = 0; t < triangles; ++t)
+        if (count == 0 || compare_words(faces[t].corners, faces[count - 1].corners, 3) != 0)
+            faces[count++] = faces[t];
+    return count;
 }
 
 static whit_result add_mesh(struct hard_topology *topology, const struct scene_mesh *mesh,
@@ -138,8 +148,9 @@ static whit_result add_mesh(struct hard_topology *topology, const struct scene_m
     whit_result result =
         welded && edges && faces && vertex_open ? weld(mesh, welded) : WHIT_ERROR_MEMORY;
     if (result == WHIT_OK) {
-        count_edges(topology, welded, triangles, edges, vertex_open);
-        count_duplicates(topology, welded, triangles, faces);
+        uint32_t face_count = find_faces(welded, triangles, faces);
+        count_edges(topology, welded, faces, face_count, edges, vertex_open);
+        topology->duplicates += triangles - face_count;
         for (uint32_t t = 0; t < triangles; ++t)
             open[t] = vertex_open[welded[3 * t]] | vertex_open[welded[3 * t + 1]] |
                       vertex_open[welded[3 * t + 2]];

@@ -4,7 +4,8 @@
 
 #include "scene/scene.h"
 
-/* Edges and triangles of all meshes together; vertices with equal coordinates count as one. */
+/* Edges and triangles of all meshes together. Vertices with equal coordinates count as one, and so
+   do the edges of triangles with equal corners. */
 struct hard_topology {
     uint64_t triangles, edges;
     uint64_t open_edges;    /* edges with one triangle */

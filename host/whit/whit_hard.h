@@ -72,7 +72,8 @@ typedef struct whit_hard_report {
                             compares as the twin does, by itself or because of params.portable */
     uint32_t broken;     /* rows that did not keep a promise */
     uint32_t unanswered; /* rows whose `unanswered` is true */
-    /* Counts for a user's scene; vertices with equal coordinates count as one. */
+    /* Counts for a user's scene; vertices with equal coordinates count as one, and so do the edges
+       of triangles with equal corners. */
     uint64_t triangles, edges, open_edges, crowded_edges, flipped_edges, duplicates;
 } whit_hard_report;
 

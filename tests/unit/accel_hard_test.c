@@ -213,7 +213,8 @@ TEST(self_hits_are_seen)
 }
 
 /* A cube of 12 triangles with unshared vertices: complete, without the last triangle, with the
-   first reversed, and with the first in place of the last. */
+   first reversed, with the first in place of the last; and its first triangle alone, with its back.
+ */
 TEST(surfaces_are_described)
 {
     static const struct {
@@ -222,7 +223,8 @@ TEST(surfaces_are_described)
     } rows[] = {{"whole", 0, 0, 0, 0},
                 {"one dropped", 3, 0, 0, 0},
                 {"one flipped", 0, 0, 3, 0},
-                {"one twice", 3, 3, 0, 1}};
+                {"one twice", 3, 0, 0, 1},
+                {"one with its back", 3, 0, 0, 1}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
         own_soup soup = soup_of_mesh("box", mesh_box(1, 2, 3));
         const float *v[3] = {soup_vertex(&soup, 0, 0), soup_vertex(&soup, 0, 1),
@@ -235,6 +237,9 @@ TEST(surfaces_are_described)
                    6 * sizeof(float));
         if (i == 3)
             soup_set(&soup, soup.count - 1, v[0], v[1], v[2]);
+        soup.count = i == 4 ? 2 : soup.count;
+        if (i == 4)
+            soup_set(&soup, 1, v[0], v[2], v[1]);
         own_scene *scene = scene_ready(soup_scene(&soup));
         assert_int_equal(hard_topology_init(scene, &t), WHIT_OK);
         for (uint32_t k = 0; k < t.triangles; ++k)
