@@ -117,19 +117,24 @@ static void across(const double dir[3], double first[3], double second[3])
 }
 
 /* Whether eight neighbouring rays hit too: then the ray passes through the inside of a surface and
-   not along its outline. */
-static bool is_surrounded(struct rational *rational, const struct gpu_ray *ray)
+   not along its outline. They are neighbours in the instance's object space: where its transform
+   stretches, those in the world may meet almost the same points. */
+static bool is_surrounded(struct rational *rational, const struct gpu_instance *instance,
+                          const struct gpu_ray *ray)
 {
-    const double dir[3] = {(double)ray->dir[0], (double)ray->dir[1], (double)ray->dir[2]};
+    struct gpu_ray local = accel_local_ray(instance, ray);
+    const double dir[3] = {(double)local.dir[0], (double)local.dir[1], (double)local.dir[2]};
     double first[3], second[3], length = sqrt(double3_dot(dir, dir));
     across(dir, first, second);
     for (int i = 0; i < 9; ++i) {
         struct gpu_ray beside = *ray;
         struct rational_hit hit;
+        float step[3];
         for (int k = 0; k < 3; ++k)
-            beside.dir[k] =
-                (float)(dir[k] +
-                        BESIDE * length * ((i % 3 - 1) * first[k] + (i / 3 - 1) * second[k]));
+            step[k] = (float)(BESIDE * length * ((i % 3 - 1) * first[k] + (i / 3 - 1) * second[k]));
+        struct vec3 moved = accel_rotate_rows(instance->forward0, instance->forward1,
+                                              instance->forward2, vec3_load(step));
+        vec3_store(beside.dir, vec3_add(vec3_load(ray->dir), moved));
         rational_trace(rational, &beside, NULL, &hit);
         if (hit.primitive == HIT_NONE)
             return false;
@@ -188,7 +193,7 @@ static bool is_leak(const struct hard_judgement *j, struct rational *rational, u
     return j->hard->truth == HARD_MUST_HIT ||
            (!starts_there(j->hard, ray, j->exact[i].t) &&
             !starts_in_plane(j->hard, ray, &j->exact[i]) && !touches_open_edge(j, &j->exact[i]) &&
-            is_surrounded(rational, ray));
+            is_surrounded(rational, &j->hard->accel->instances[j->exact[i].instance], ray));
 }
 
 static bool is_sure(const struct hard_judgement *j, uint64_t i)

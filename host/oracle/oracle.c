@@ -43,13 +43,12 @@
 #include "oracle/oracle.h"
 #include "twin/ray.h"
 
-#define ROUNDING            0x1p-24
-#define DENORMAL            0x1p-149
-#define NORMAL_MIN          0x1p-126
+#define ROUNDING   0x1p-24
+#define DENORMAL   0x1p-149
+#define NORMAL_MIN 0x1p-126
 /* Boxes are widened by this share of the distance to the ray's origin: hits of the float test lie
    within 16 roundings of a box. */
-#define BOX_GROWTH          0x1p-18
-#define BOX_GROWTH_INSTANCE 0x1p-14 /* in the tree over instances: transforms stretch errors */
+#define BOX_GROWTH 0x1p-18
 
 struct probe {
     double origin[3], dir[3];
@@ -436,6 +435,19 @@ static void visit_record(struct conservative_walk *walk, uint32_t record, uint32
         keep_nearest(s, &v, instance, triangle->primitive);
 }
 
+/* In the tree over instances transforms stretch these roundings, by at most |M| |M^-1|: traversals
+   widen boxes by 16 of them, of which the box of node 1 has the factors (accel/pose.c). */
+static double instance_growth(const struct accel *accel)
+{
+    double growth = BOX_GROWTH;
+    if (accel->single_identity || accel->flat || accel->instance_node_count == 0)
+        return growth;
+    const struct gpu_bvh_node *slack = &accel->nodes[1];
+    for (int i = 0; i < 3; ++i)
+        growth = fmax(growth, 4.0 * ((double)slack->lo[i] + (double)slack->hi[i]));
+    return growth;
+}
+
 void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool brute,
                   struct oracle_hit *hit)
 {
@@ -456,8 +468,7 @@ void oracle_trace(const struct accel *accel, const struct gpu_ray *ray, bool bru
                        .primitive = HIT_NONE,
                        .second_t = INFINITY,
                        .margin = INFINITY};
-    s.world =
-        probe_world(ray, accel->single_identity || accel->flat ? BOX_GROWTH : BOX_GROWTH_INSTANCE);
+    s.world = probe_world(ray, brute ? BOX_GROWTH : instance_growth(accel));
     if (!(s.world.t_min <= s.world.t_max))
         return;
     s.probe = s.world;

@@ -195,6 +195,32 @@ TEST(rays_in_a_plane_are_no_leaks)
     shots_free(shots);
 }
 
+/* A ball sheared by 1e4. The line of a ray is off by more than the ball, in object space, where
+   rays beside it in the world meet almost the same points: a miss is that of an outline. */
+TEST(outlines_of_sheared_instances_are_no_leaks)
+{
+    const double at[3] = {0, 0, 0}, one[3] = {1, 1, 1};
+    const struct affine shear = {.m = {1, 1e4, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
+    const struct affine turn = affine_from_trs(at, (double[]){0.3, -0.5, 0.2, 0.8}, one);
+    const struct affine place = affine_multiply(&shear, &turn);
+    struct scene_mesh mesh = mesh_sphere(1.0, 12, 8);
+    struct shots *shots = calloc(1, sizeof *shots);
+    struct scene *scene;
+    assert_non_null(shots);
+    assert_int_equal(hard_scene_of_mesh(&silent, "sheared", &mesh, &place, &scene), WHIT_OK);
+    assert_int_equal(hard_scene_borrow(&silent, scene, 0.0, false, &shots->hard), WHIT_OK);
+    for (uint32_t i = 0; i < RAYS; ++i)
+        shots->rays[i] = hard_ray_make(&shots->hard, HARD_AROUND, 1, i);
+    assert_int_equal(hard_trace_exact(&shots->hard, shots->rays, RAYS, THREADS, shots->exact),
+                     WHIT_OK);
+    whit_tally tally = shots_trace(shots, NUMERICS_WATERTIGHT);
+    print_message("  %u misses, %u leaks\n", (uint32_t)tally.misses, (uint32_t)tally.leaks);
+    assert_true(tally.misses > 0);
+    assert_int_equal(tally.leaks, 0);
+    shots_free(shots);
+    scene_destroy(scene);
+}
+
 /* Rays that leave a convex body hit nothing; an invented hit counts as a self-hit. */
 TEST(self_hits_are_seen)
 {

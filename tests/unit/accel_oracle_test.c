@@ -43,6 +43,23 @@ static struct world flat_world(void)
     return instances_in(WHIT_INSTANCES_OFF);
 }
 
+/* Spheres of triangles that are squashed askew: the roundings of a ray from far away in object
+   space move it, in the world, by more than one of them is thick. */
+static struct world squashed_world(uint32_t count)
+{
+    struct scene *scene = scene_begin(&silent, "squashed");
+    uint32_t sphere = scene_put_mesh(scene, mesh_sphere(1.0, 10, 10));
+    for (uint32_t i = 0; i < count; ++i) {
+        const double at[3] = {0.1 * i, 0.2 * i, 0.0}, none[3] = {0, 0, 0}, one[3] = {1, 1, 1};
+        const struct affine flat =
+            affine_from_trs(at, (double[]){0.3, -0.5, 0.2, 0.8}, (double[]){1, 1, 1e-4});
+        const struct affine askew = affine_from_trs(none, (double[]){0.1, 0.7, -0.4, 0.5}, one);
+        const struct affine matrix = affine_multiply(&flat, &askew);
+        scene_put_again(scene, sphere, &(struct put){.matrix = &matrix});
+    }
+    return world_of(scene, (whit_accel_params){.instances = WHIT_INSTANCES_ON});
+}
+
 static struct gpu_ray random_ray(const struct world *world, uint32_t i)
 {
     bool far = world->accel->instance_count > 3 && i % 4 == 0;
@@ -103,6 +120,25 @@ TEST(tree_gives_what_brute_force_gives)
             assert_tree_is_brute(&worlds[w], &ray);
         }
         world_finish(&worlds[w]);
+    }
+}
+
+/* The tree must find what floats may hit, however much instances stretch their errors. */
+TEST(squashed_instances_are_entered)
+{
+    for (uint32_t count = 1; count <= 3; count += 2) {
+        own_world world = squashed_world(count);
+        uint32_t doubtful = 0;
+        random_state = 20 + count;
+        for (uint32_t i = 0; i < 3000; ++i) {
+            struct gpu_ray ray = ray_through(random_point(i % 2 ? 1e3f : 2.0f), random_point(3.0f));
+            struct oracle_hit hit;
+            assert_tree_is_brute(&world, &ray);
+            oracle_trace(world.accel, &ray, false, &hit);
+            doubtful += fabs(hit.edge_margin) < 1.0;
+        }
+        print_message("  %u of 3000 rays at %u squashed instances are in doubt\n", doubtful, count);
+        assert_true(doubtful > 100 && doubtful < 2500);
     }
 }
 
