@@ -362,7 +362,7 @@ bool upload_can_widen(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
     return renderer->scene_buffers.texel_loads && !renderer->accel->no_trees &&
-           device_get_info(renderer->device)->subgroup_size == 8 && !params->count &&
+           device_get_info(renderer->device)->subgroup_size == 8 &&
            params->traversal == WHIT_TRAVERSAL_DISTANCE && params->numerics != WHIT_NUMERICS_FAST &&
            params->packets != WHIT_PACKETS_OFF;
 }
@@ -404,7 +404,7 @@ static bool choose_packets(struct renderer *renderer)
     renderer->packet_rays = choose_packet_rays(renderer);
     if (renderer->params.packets == WHIT_PACKETS_ON && renderer->packet_rays == 1)
         renderer->packet_rays = packet_choices[0].rays;
-    return upload_can_widen(renderer) && renderer->packet_rays > 1;
+    return upload_can_widen(renderer) && renderer->packet_rays > 1 && !renderer->params.count;
 }
 
 whit_result upload_choose_packets(struct renderer *renderer)

@@ -571,7 +571,9 @@ whit_result variant_create_tests(const struct target *target, struct buffer *fou
 bool variant_has_beams(const struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;
-    return renderer->params.numerics == NUMERICS_WATERTIGHT && upload_can_widen(renderer) &&
+    const whit_renderer_params *params = &renderer->params;
+    return params->numerics == WHIT_NUMERICS_WATERTIGHT && upload_can_widen(renderer) &&
+           (!params->count || params->packets == WHIT_PACKETS_ON) &&
            (renderer->single_identity || accel->flat);
 }
 

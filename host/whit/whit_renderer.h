@@ -400,11 +400,12 @@ typedef enum whit_trace_on {
 
 /* Finds the closest hit of each ray, or with `any` any hit (then only `primitive` != WHIT_NONE has
    a meaning). Rays miss whose origin or direction is not finite or whose t_min is NaN; a t_max of
-   NaN is no limit. Cut-outs count as solid. `cost`: gets the cost of all
-   rays together, or NULL (on the device it needs params.count). WHIT_ERROR_STATUS where the hits
-   cannot be trusted, WHIT_ERROR_USAGE for what the renderer was not made for (no device, `count`
-   false), and on the device after a change of time that failed halfway, until one
-   succeeds;
+   NaN is no limit. Cut-outs count as solid. `cost`: gets the cost of all rays together, or NULL
+   (on the device it needs params.count). It is that of each ray alone; with WHIT_PACKETS_ON on the
+   device a packet is one record and counts as one ray, its inner nodes have up to eight children,
+   and its triangles are tested with all its rays. WHIT_ERROR_STATUS where the hits cannot be
+   trusted, WHIT_ERROR_USAGE for what the renderer was not made for (no device, `count` false), and
+   on the device after a change of time that failed halfway, until one succeeds;
    WHIT_ERROR_CANCELLED; WHIT_ERROR_DEVICE on the device. */
 WHIT_CHECK whit_result whit_trace(whit_renderer *renderer, whit_trace_on on, const whit_ray *rays,
                                   uint64_t count, bool any, whit_hit *hits, whit_cost *cost);

@@ -222,6 +222,8 @@ uint sort_children(uint ref, int entered)
 
 uint step_packet(uint node, uint base)
 {
+    if (SPEC_COUNT != 0u)
+        traversal_cost.inner_nodes++;
     int row = int(node * 16u + gl_SubgroupInvocationID * 2u);
     uvec4 r0 = texelFetch(node8_texels, row), r1 = texelFetch(node8_texels, row + 1);
     uint ref = (r1.w << BVH_COUNT_SHIFT) | r0.w;
@@ -425,6 +427,8 @@ void traverse_packets(const uint mode, float t_min, uint root, uint root8, vec3 
     packet_status = 0u;
     packet_height = 0u;
     packet_top = REF_DONE;
+    if (SPEC_COUNT != 0u)
+        traversal_cost = gpu_cost(1u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
     bool some = false;
     EACH_RAY {
         packet_alive[r] = packet_alive[r] && is_usable(packet_origin[r], packet_dir[r]);

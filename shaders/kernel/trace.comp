@@ -136,6 +136,19 @@ void list_packet(bool wanted, uint index[SPEC_PACKET_RAYS], bool alive[SPEC_PACK
     }
 }
 
+// With SPEC_COUNT the cost of a packet is that of its first ray, and the others have none. Each
+// record was tested with all rays of a lane.
+void store_packet_cost(uint index, uint r)
+{
+    bool first = r == 0u && gl_SubgroupInvocationID == 0u;
+    gpu_cost cost = gpu_cost(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+    if (first) {
+        cost = traversal_cost;
+        cost.triangles /= SPEC_PACKET_RAYS;
+    }
+    costs[index] = cost;
+}
+
 // Traces the subgroup's rays as a packet if they start at one point and go about the same way;
 // lists them otherwise.
 void trace_beam()
@@ -170,6 +183,8 @@ void trace_beam()
     EACH_RAY {
         if (alive[r] && !apart)
             store_answer(index[r], packet_hits[r]);
+        if (SPEC_COUNT != 0u && alive[r] && !apart)
+            store_packet_cost(index[r], r);
         status |= alive[r] && !apart ? packet_hits[r].status : 0u;
     }
     report_status(status);

@@ -203,6 +203,41 @@ TEST(packets_equal_twin)
     check_packets(forty_rings(), &flat, "one tree of 40 instances");
 }
 
+/* Layers of slivers along one diagonal: rays beside the diagonal meet every box and no triangle. So
+   a packet opens every node of eight children once, and tests every triangle once. Rays of another
+   direction are no packet, and count one by one. */
+TEST(packets_count_what_they_visit)
+{
+    enum { LAYERS = 700, PACKET = 64, MANY = 2 * PACKET };
+    static const float sliver[9] = {0, 0, 0, 1, 1, 0, 0.99f, 1, 0};
+    const whit_renderer_params on = {
+        .width = 16, .height = 16, .packets = WHIT_PACKETS_ON, .count = true};
+    own_fixture f = fixture_open(scene_of(mesh_stack(LAYERS, sliver, 2, 0.001f)), NULL, &on);
+    struct gpu_ray rays[MANY];
+    struct gpu_hit hits[MANY];
+    struct gpu_cost costs[MANY], alone = {0};
+    uint32_t status = 0;
+    if (device_get_info(f.device)->subgroup_size != 8)
+        return;
+    for (int i = 0; i < MANY; ++i)
+        rays[i] =
+            (struct gpu_ray){{0.8f, 0.2f, -1}, 0, {0, 0, i < PACKET || i % 2 ? 1 : -1}, INFINITY};
+    assert_int_equal(renderer_trace(f.renderer, rays, MANY, false, hits, costs), WHIT_OK);
+    assert_int_equal(renderer_trace_together(f.renderer), PACKET);
+    traverse_ray(f.accel, NULL, &rays[0], &hits[0], &alone, &status);
+    print_message("  a packet: %u nodes, %u triangles; a ray: %u nodes, %u triangles\n",
+                  costs[0].inner_nodes, costs[0].triangles, alone.inner_nodes, alone.triangles);
+    assert_int_equal(costs[0].rays, 1);
+    assert_int_equal(costs[0].inner_nodes, f.accel->bvh8.mesh_node_count);
+    assert_int_equal(costs[0].triangles, LAYERS);
+    for (int i = 1; i < PACKET; ++i)
+        assert_int_equal(costs[i].rays + costs[i].inner_nodes + costs[i].triangles, 0);
+    for (int i = PACKET; i < MANY; ++i) {
+        assert_int_equal(costs[i].inner_nodes, i % 2 ? alone.inner_nodes : 1);
+        assert_int_equal(costs[i].triangles, i % 2 ? LAYERS : 0);
+    }
+}
+
 /* The name of a buffer that the device has no memory for; whether buffers cannot be read. */
 static const char *no_room;
 static bool unreadable;

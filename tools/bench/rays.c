@@ -40,7 +40,16 @@ static json_t *hits_document(const struct agreement *agreement)
     return hits;
 }
 
+static void put_visits(json_t *row, const char *key, const whit_cost *cost)
+{
+    json_t *visits = document_child(row, key);
+    document_count(visits, "records", cost->records);
+    document_count(visits, "inner_nodes", cost->inner_nodes);
+    document_count(visits, "triangles", cost->triangles);
+}
+
 static json_t *row_document(const struct model *model, uint32_t kind, const struct batch *batches,
+                            const struct visits *visits,
                             const struct agreement agreement[PEER_KINDS])
 {
     static const char *const keys[] = {"whit_ms", "single_ms", "packets_ms", "stream_ms",
@@ -60,13 +69,29 @@ static json_t *row_document(const struct model *model, uint32_t kind, const stru
                 document_put(times, keys[side], table_times(of));
         }
     }
+    put_visits(row, "packets", &visits->together);
+    put_visits(row, "alone", &visits->alone);
     document_put(row, "hits", hits_document(&agreement[PEER_EMBREE]));
     document_put(row, "pipeline_hits", hits_document(&agreement[PEER_PIPELINE]));
     return row;
 }
 
+/* Says what packets visit, where at least half of the rays are in packets. */
+static void say_visits(struct table *table, const char *name, const struct visits *visits)
+{
+    double walks = (double)visits->together.records, rays = (double)visits->alone.records;
+    if (walks > 0.0 && walks < 0.5 * rays)
+        table_say(table,
+                  "%s: packets, and rays that are in none, open %.1f nodes (of eight children in "
+                  "packets) and test %.1f triangles for %.1f rays on average; a ray alone opens "
+                  "%.1f nodes of two children and tests %.1f triangles.",
+                  name, (double)visits->together.inner_nodes / walks,
+                  (double)visits->together.triangles / walks, rays / walks,
+                  (double)visits->alone.inner_nodes / rays, (double)visits->alone.triangles / rays);
+}
+
 static void put_row(const struct model *model, uint32_t kind, const struct batch *batches,
-                    const struct agreement agreement[PEER_KINDS])
+                    const struct visits *visits, const struct agreement agreement[PEER_KINDS])
 {
     struct table *table = model->table;
     const struct batch *tiles = &batches[0], *shuffled = &batches[1];
@@ -84,7 +109,8 @@ static void put_row(const struct model *model, uint32_t kind, const struct batch
     for (int side = RAYS_SINGLE; side < RAYS_BACK; ++side)
         put_ns(model, batch_quicker(tiles, (enum rays_side)side));
     table_cell(table, isnan(other.value) ? "-" : "%.2f", other.value);
-    table_figure(table, &figure, row_document(model, kind, batches, agreement));
+    table_figure(table, &figure, row_document(model, kind, batches, visits, agreement));
+    say_visits(table, figure.name, visits);
     for (int peer = 0; peer < PEER_KINDS; ++peer)
         if (agreement[peer].one_alone + agreement[peer].other_t > 0)
             table_say(table,
@@ -99,11 +125,14 @@ static whit_result run_kind(struct model *model, uint32_t kind)
 {
     struct batch batches[2] = {0};
     struct agreement agreement[PEER_KINDS] = {0};
-    whit_result result = WHIT_OK;
-    for (uint32_t order = 0; result == WHIT_OK && order < 2; ++order)
-        result = batch_run(model, &batches[order], (enum rays_kind)kind, order == 1, agreement);
+    struct visits visits = {0};
+    whit_result result = batch_run(model, &batches[0], (enum rays_kind)kind, false, agreement);
     if (result == WHIT_OK)
-        put_row(model, kind, batches, agreement);
+        result = batch_count(model, &visits);
+    if (result == WHIT_OK)
+        result = batch_run(model, &batches[1], (enum rays_kind)kind, true, agreement);
+    if (result == WHIT_OK)
+        put_row(model, kind, batches, &visits, agreement);
     return result;
 }
 

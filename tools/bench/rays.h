@@ -30,6 +30,12 @@ struct agreement {
     uint64_t rays, one_alone, other_ids, other_t;
 };
 
+/* What the rays of a batch visit in packets, and each alone. In packets nodes have up to eight
+   children, and a packet or a ray that is in none is a record. */
+struct visits {
+    whit_cost together, alone;
+};
+
 struct model {
     struct bench *bench;
     struct table *table;

@@ -199,3 +199,24 @@ whit_result batch_run(struct model *model, struct batch *batch, enum rays_kind k
     }
     return result;
 }
+
+whit_result batch_count(struct model *model, struct visits *visits)
+{
+    const whit_renderer_params params = {.width = 16,
+                                         .height = 16,
+                                         .cancel = &cli_cancel,
+                                         .packets = WHIT_PACKETS_ON,
+                                         .count = true};
+    whit_renderer *renderer;
+    whit_result result =
+        whit_renderer_create(model->bench->device, model->loaded.accel, &params, &renderer);
+    if (result != WHIT_OK)
+        return result;
+    result = whit_trace(renderer, WHIT_TRACE_DEVICE, model->rays, model->count, model->batch->any,
+                        model->traced, &visits->together);
+    if (result == WHIT_OK)
+        result = whit_trace(renderer, WHIT_TRACE_CPU_FLOAT, model->rays, model->count,
+                            model->batch->any, model->traced, &visits->alone);
+    whit_renderer_destroy(renderer);
+    return result;
+}
