@@ -123,6 +123,9 @@ static whit_result check_off(struct scene *scene, const char *path, const char *
         counts[i] = strtoull(at, &end, 10);
         if (end == at)
             return WHIT_OK;
+        if (at[strspn(at, " \t\n")] == '-')
+            return log_failure(&scene->log, WHIT_ERROR_INPUT, "%s: its number of %s is below 0",
+                               path, i ? "faces" : "vertices");
         at = end;
     }
     for (int what = 0; what < 2; what++) {

@@ -29,6 +29,7 @@ struct property {
 struct element {
     char name[WORD_BYTES];
     unsigned long long count;
+    bool counted;      /* the header gives `count` as a whole number */
     size_t begin, end; /* offsets of its lines in the header */
     size_t data_end;   /* offset behind its data; filled by check_elements, as is empty_count */
     unsigned long long empty_count; /* faces without corners */
@@ -112,6 +113,7 @@ static bool add_element(struct header *header, size_t begin, char words[WORDS_MA
         .begin = begin, .line = header->line_count, .first_property = header->property_count};
     memcpy(element.name, words[1], sizeof element.name);
     element.count = strtoull(words[2], NULL, 10);
+    element.counted = words[2][0] && words[2][strspn(words[2], "0123456789")] == 0;
     return ARRAY_PUSH(header->elements, header->element_count, header->element_capacity, element);
 }
 
@@ -156,6 +158,9 @@ static whit_result check_header(const whit_log *log, const char *path, const str
                            header->line_count + 1);
     for (uint32_t i = 0; i < header->element_count; i++) {
         const struct element *element = &header->elements[i];
+        if (!element->counted)
+            return log_failure(log, WHIT_ERROR_INPUT, "%s:%u: it says no number of elements", path,
+                               element->line);
         if (element->property_count == 0 || element->count <= behind) /* others have no data */
             continue;
         return log_failure(log, WHIT_ERROR_INPUT,

@@ -494,6 +494,8 @@ TEST_IN(claims_of_endless_memory_are_refused, fixture_begin, fixture_end)
     path = put_text("b.ply", "ply\nformat ascii 1.0\nelement vertex 300000000\nproperty float x\n"
                              "end_header");
     fixture_refused(path, ".ply:3: 300000000 elements, but only 0 bytes behind the header");
+    path = put_text("d.ply", "ply\nformat ascii 1.0\nelement vertex -3\n" XYZ "end_header\n");
+    fixture_refused(path, ".ply:3: it says no number of elements");
     path =
         put_text("c.ply", "ply\nformat ascii 1.0\nelement empty 4000000000\nelement vertex 3\n" XYZ
                           "element face 1\n" CORNERS "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");

@@ -98,6 +98,10 @@ TEST_IN(faces_that_an_off_lacks_are_told, fixture_begin, fixture_end)
     fixture_refused(put_text("a.off", "5 0\n" SQUARE), "a.off: vertex 5 of 5 is cut short");
     fixture_refused(put_text("a.off", "OFF\n4 2 0\n" SQUARE "3 0 1 2\n3 0 2 4\n"),
                     "a.off: face 2 of 2 names a vertex that is not there");
+    fixture_refused(put_text("a.off", "OFF\n-4 2 0\n" SQUARE "3 0 1 2\n"),
+                    "a.off: its number of vertices is below 0");
+    fixture_refused(put_text("a.off", "OFF\n4 -2 0\n" SQUARE "3 0 1 2\n"),
+                    "a.off: its number of faces is below 0");
     fixture_refused(put_text("a.off", "OFF\n4 1 0\n" SQUARE "10 0 1 2 3 0 1 2 3 0 1\n"),
                     "a.off: all its faces have more than 9 corners");
     fixture_refused(put_text("a.off", "OFF BINARY\n\1"), "a.off: a binary OFF is not read");
