@@ -42,7 +42,7 @@ static bool has_no_axes(const char *path)
     char extension[8];
     path_extension(path, extension, sizeof extension);
     return strcmp(extension, "obj") == 0 || strcmp(extension, "ply") == 0 ||
-           strcmp(extension, "stl") == 0;
+           strcmp(extension, "stl") == 0 || strcmp(extension, "off") == 0;
 }
 
 static whit_result read_model(struct scene *scene, const char *path, const whit_load_params *params)

@@ -14,11 +14,17 @@ static const double FLOOR = 0.5;
 /* Feet carry a model if the box around them covers at least FLOOR of the ground, and they are no
    rim, such as that of a mask. A side on which it hardly stands, such as the back of a car, covers
    less than this share. */
-static const double EDGE = 0.4;
+static const double EDGE = 0.5;
 /* A floor may also lie up to this share of the extent above the end, as on a foundation. */
 static const double LOW = 0.1;
 /* A model thinner than this share of its other sides is a board, which may stand on an edge. */
 static const double BOARD = 0.15;
+
+/* A shape is the mirror image of itself along an axis, or clearly not, if no more than the first,
+   or at least the second, of these shares of its surface is at other places in the mirror. */
+static const double EVEN = 0.02, UNEVEN = 0.1;
+/* Places along an axis that the surface is counted at. */
+enum { PLACES = 16 };
 
 /* Rotation matrices that turn each axis to +y; exact, since they only swap and negate
    coordinates. */
@@ -64,6 +70,30 @@ static struct shape measure(const struct scene *scene)
 static double area_of(const struct shape *box, int u, int v)
 {
     return fmax(box->hi[u] - box->lo[u], 0.0) * fmax(box->hi[v] - box->lo[v], 0.0);
+}
+
+/* The share of the surface that is at other places in a mirror across the axis. */
+static double unevenness(const struct scene *scene, const struct shape *shape, int axis)
+{
+    double areas[PLACES + 1] = {0}, total = 0.0, differing = 0.0;
+    for (uint32_t m = 0; m < scene->mesh_count; ++m)
+        for (uint32_t t = 0; t < scene->meshes[m].triangle_count; ++t) {
+            double p[3][3], edges[2][3];
+            scene_mesh_corners(&scene->meshes[m], t, p);
+            double3_sub(p[1], p[0], edges[0]);
+            double3_sub(p[2], p[0], edges[1]);
+            double area = double3_area(edges[0], edges[1]);
+            for (int i = 0; i < 3; ++i) {
+                double place = (p[i][axis] - shape->lo[axis]) / (shape->hi[axis] - shape->lo[axis]);
+                int below = (int)fmin(fmax(place * PLACES, 0.0), PLACES - 1);
+                areas[below] += area * (below + 1 - place * PLACES);
+                areas[below + 1] += area * (place * PLACES - below);
+            }
+            total += 3.0 * area;
+        }
+    for (int i = 0; i <= PLACES; ++i)
+        differing += 0.5 * fabs(areas[i] - areas[PLACES - i]);
+    return total > 0.0 ? differing / total : 0.0;
 }
 
 /* The triangles at the lower end of an axis, as shares of the area of the box's face at that end
@@ -130,6 +160,27 @@ static struct ending look_below(const struct scene *scene, const struct shape *s
                         : (struct ending){0};
 }
 
+/* Whether the shape shows that one axis is up and not another one: it stands on its lower end, with
+   the ground at 0 as modelling programs put it, and not on that of the other. */
+static bool stands_along(const struct scene *scene, const struct shape *shape, int up, int other)
+{
+    double extent[3];
+    for (int k = 0; k < 3; ++k)
+        extent[k] = shape->hi[k] - shape->lo[k];
+    bool board = extent[up] < BOARD * fmin(extent[(up + 1) % 3], extent[(up + 2) % 3]);
+    bool grounded =
+        fabs(shape->lo[up]) <= SLAB * extent[up] && fabs(shape->lo[other]) > SLAB * extent[other];
+    if (board || !grounded)
+        return false;
+    struct ending a = look_below(scene, shape, up), b = look_below(scene, shape, other);
+    if ((a.flat >= STANDS && b.flat < HARDLY) || (a.low >= FLOOR && b.low < HARDLY) ||
+        (a.feet >= FLOOR && !a.rim && b.feet < EDGE))
+        return true;
+    /* Things are more often the same on both sides than above and below. */
+    return !a.rim && unevenness(scene, shape, up) >= UNEVEN &&
+           (a.flat >= FLOOR || unevenness(scene, shape, other) <= EVEN);
+}
+
 whit_up up_guess(const struct scene *scene, bool z_usual)
 {
     const struct shape shape = measure(scene);
@@ -140,16 +191,13 @@ whit_up up_guess(const struct scene *scene, bool z_usual)
         return WHIT_UP_Y;
     struct ending y = look_below(scene, &shape, 1), z = look_below(scene, &shape, 2);
     if (z_usual)
-        return y.flat >= STANDS && z.flat < HARDLY ? WHIT_UP_Y : WHIT_UP_Z;
+        return (y.flat >= STANDS && z.flat < HARDLY) || stands_along(scene, &shape, 1, 2)
+                   ? WHIT_UP_Y
+                   : WHIT_UP_Z;
     /* A floor with something in its middle; a picture in a frame would fill most of the floor. */
     if (z.flat >= FLOOR && z.rest > 0.0 && z.rest < FLOOR && y.flat < HARDLY)
         return WHIT_UP_Z;
-    bool board = extent[2] < BOARD * fmin(extent[0], extent[1]);
-    /* Programs with z upwards put the ground at z = 0. */
-    bool grounded = fabs(shape.lo[2]) <= SLAB * extent[2] && fabs(shape.lo[1]) > SLAB * extent[1];
-    bool stands = (z.flat >= STANDS && y.flat < HARDLY) || (z.low >= FLOOR && y.low < HARDLY) ||
-                  (z.feet >= FLOOR && !z.rim && y.feet < EDGE);
-    return !board && grounded && stands ? WHIT_UP_Z : WHIT_UP_Y;
+    return stands_along(scene, &shape, 2, 1) ? WHIT_UP_Z : WHIT_UP_Y;
 }
 
 whit_result up_turn_by_shape(struct scene *scene, const char *path)
@@ -162,6 +210,15 @@ whit_result up_turn_by_shape(struct scene *scene, const char *path)
     uint32_t node = up_add_node(scene, up);
     if (node == SCENE_NONE)
         return WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; i < node; ++i) { /* an OFF comes with nodes */
+        struct scene_node *root = &scene->nodes[i];
+        if (root->parent != SCENE_NONE)
+            continue;
+        if (!root->has_matrix)
+            root->matrix = affine_from_trs(root->translation, root->rotation, root->scale);
+        root->matrix = affine_multiply(&scene->nodes[node].matrix, &root->matrix);
+        root->has_matrix = true;
+    }
     for (uint32_t i = 0; i < scene->instance_count; ++i)
         if (scene->instances[i].node == SCENE_NONE)
             scene->instances[i].node = node;

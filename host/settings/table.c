@@ -433,8 +433,8 @@ const struct setting settings_table[] = {
     {"up", 0, NULL,
      "the axis of a model that points up, once an axis that its\n"
      "format or file states has become y; auto: y, and of\n"
-     "OBJ, PLY and STL as their shape says; trace, bvh, hard and\n"
-     "--triangles take it as it is unless told",
+     "OBJ, PLY, STL and OFF as their shape says; trace, bvh, hard\n"
+     "and --triangles take it as it is unless told",
      AT(CHOICE, load.up), .values = values_up, .commands = IN_SCENES, .change = SETTING_HITS,
      .need = SETTING_NEEDS_SCENE, .title = "up", .key = '7'},
     {"clip", 0, "NAME|N",

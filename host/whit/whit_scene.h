@@ -15,8 +15,8 @@ typedef enum whit_up {
     WHIT_UP_MINUS_X,
     WHIT_UP_MINUS_Y,
     WHIT_UP_MINUS_Z,
-    WHIT_UP_AUTO, /* y; for OBJ, PLY and STL, which do not define it, guessed from the shape of the
-                     model */
+    WHIT_UP_AUTO, /* y; for OBJ, PLY, STL and OFF, which do not define it, guessed from the shape of
+                     the model */
 } whit_up;
 
 /* The lights that a scene has. */

@@ -139,6 +139,12 @@ bounds_are 4 0 --up auto
 bounds_are 4 0 --up=-y
 bounds_are 0 4 --up z
 bounds_are 1 0 --up x
+# A pyramid that lies on its side.
+printf 'OFF\n5 5 0\n-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n0 0 3\n4 3 2 1 0\n3 0 1 4\n3 1 2 4\n3 2 3 4\n3 3 0 4\n' >"$OUT/pyramid.off"
+for up in auto y; do
+    expect 0 "a lying pyramid, --up $up" scene "$OUT/pyramid.off" --up $up --json
+    check "stands with --up auto" jq -e --arg up $up '.bounds | (.hi[1] == 3) == ($up == "auto")' "$OUT/stdout"
+done
 refuse 2 "no such axis" "auto, x, y, z" scene "$OUT/slab.gltf" --up w
 sky="--camera 0,0,9,0,0,99,0,1,0,40 --size 8x8 --quiet"
 # shellcheck disable=SC2086

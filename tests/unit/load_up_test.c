@@ -50,19 +50,28 @@ TEST(what_stands_on_z_is_turned)
     /* Not at z = 0 it may be a relief whose back is in the z plane. */
     assert_int_equal(guess(pyramid(-1), true, false), WHIT_UP_Y);
     assert_int_equal(guess(mesh_box(1, 1, 1), true, false), WHIT_UP_Y);
+    assert_int_equal(guess(raised(mesh_box(1, 1, 1), 0.5f), true, false), WHIT_UP_Y);
     assert_int_equal(guess(mesh_icosphere(1, 3), true, false), WHIT_UP_Y);
 }
 
-/* A table whose four legs cover a hundredth of the ground. */
-static whit_up guess_table(bool along_z, float at)
+/* A table whose four legs cover a hundredth of the ground, or a chair, which also has a back. */
+static whit_up guess_table(bool along_z, float at, bool back)
 {
     own_scene *scene = scene_begin(NULL, "test");
     struct scene_mesh parts[5] = {raised(mesh_box(2, 0.1, 2), at + 0.95f)};
+    float side = back ? 0.93f : 0.9f;
+    struct scene_mesh leaned = raised(mesh_box(2, 1.3, 0.1), 1.65f);
+    for (uint32_t k = 0; k < leaned.vertex_count; ++k)
+        leaned.positions[3 * (size_t)k + 2] -= 0.95f;
+    if (back)
+        scene_put(scene, along_z ? laid(leaned) : leaned, NULL);
+    else
+        scene_mesh_finish(&leaned);
     for (int i = 1; i < 5; ++i) {
         parts[i] = raised(mesh_box(0.1, 0.9, 0.1), at + 0.45f);
         for (uint32_t k = 0; k < parts[i].vertex_count; ++k) {
-            parts[i].positions[3 * (size_t)k] += i & 1 ? 0.9f : -0.9f;
-            parts[i].positions[3 * (size_t)k + 2] += i & 2 ? 0.9f : -0.9f;
+            parts[i].positions[3 * (size_t)k] += i & 1 ? side : -side;
+            parts[i].positions[3 * (size_t)k + 2] += i & 2 ? side : -side;
         }
     }
     for (int i = 0; i < 5; ++i)
@@ -72,9 +81,34 @@ static whit_up guess_table(bool along_z, float at)
 
 TEST(what_stands_on_feet_is_turned)
 {
-    assert_int_equal(guess_table(true, 0), WHIT_UP_Z);
-    assert_int_equal(guess_table(false, 0), WHIT_UP_Y);
-    assert_int_equal(guess_table(true, -0.5f), WHIT_UP_Y);
+    assert_int_equal(guess_table(true, 0, false), WHIT_UP_Z);
+    assert_int_equal(guess_table(false, 0, false), WHIT_UP_Y);
+    assert_int_equal(guess_table(true, -0.5f, false), WHIT_UP_Y);
+    assert_int_equal(guess_table(true, 0, true), WHIT_UP_Z);
+    assert_int_equal(guess_table(false, 0, true), WHIT_UP_Y);
+}
+
+/* A ball on a pole is the same on all sides, a seat with a back stands on a large bottom. */
+TEST(what_has_equal_sides_is_turned)
+{
+    for (int along_z = 0; along_z < 2; ++along_z) {
+        for (int stl = 0; stl < 2; ++stl) {
+            own_scene *scene = scene_begin(NULL, "test");
+            struct scene_mesh parts[2] = {raised(mesh_box(0.1, 3, 0.1), 1.5f),
+                                          raised(mesh_icosphere(1, 3), 4)};
+            for (int i = 0; i < 2; ++i)
+                scene_put(scene, along_z ? laid(parts[i]) : parts[i], NULL);
+            assert_int_equal(up_guess(scene, stl), along_z ? WHIT_UP_Z : WHIT_UP_Y);
+            own_scene *seat = scene_begin(NULL, "test");
+            parts[0] = raised(mesh_box(2, 0.4, 1), 0.2f);
+            parts[1] = raised(mesh_box(2, 0.6, 0.1), 0.7f);
+            for (uint32_t k = 0; k < parts[1].vertex_count; ++k)
+                parts[1].positions[3 * (size_t)k + 2] -= 0.45f;
+            for (int i = 0; i < 2; ++i)
+                scene_put(seat, along_z ? laid(parts[i]) : parts[i], NULL);
+            assert_int_equal(up_guess(seat, stl), along_z ? WHIT_UP_Z : WHIT_UP_Y);
+        }
+    }
 }
 
 /* A half shell, such as a mask, whose rim is at z = 0. */
@@ -97,12 +131,15 @@ TEST(boards_keep_standing_and_floors_lie)
     assert_int_equal(up_guess(scene, false), WHIT_UP_Z);
 }
 
-/* A ball in the middle of a plane; a share of its height is below the plane. */
+/* A ball on a plane, nearer to one side; a share of its height is below the plane. */
 static whit_up guess_site(double share)
 {
     own_scene *scene = scene_begin(NULL, "test");
     scene_put(scene, laid(raised(mesh_plane(4), (float)(2 * share))), NULL);
-    scene_put(scene, laid(raised(mesh_icosphere(1, 3), 1)), NULL);
+    struct scene_mesh ball = raised(mesh_icosphere(1, 3), 1);
+    for (uint32_t k = 0; k < ball.vertex_count; ++k)
+        ball.positions[3 * (size_t)k + 2] += 0.5f;
+    scene_put(scene, laid(ball), NULL);
     return up_guess(scene, false);
 }
 
