@@ -53,8 +53,9 @@ static bool refuse(const whit_slider *slider, const char *value, char *why, size
         snprintf(why, why_bytes, "%s is on or off, not `%.60s`", slider->name, value);
         break;
     case WHIT_SLIDER_CHOICE:
-        snprintf(why, why_bytes, "%s has no word `%.60s`; its first one is %s", slider->name, value,
-                 slider->words[0]);
+        snprintf(why, why_bytes, "%s has no word `%.60s`; there is", slider->name, value);
+        for (uint32_t i = 0; i < slider->word_count; ++i)
+            text_add(why, why_bytes, "%s %s", i ? "," : "", slider->words[i]);
     }
     return false;
 }

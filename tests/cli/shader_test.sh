@@ -85,6 +85,8 @@ check "its functions" test "$(jq -r '[.functions[].name] | join(" ")' all.json)"
 check "its aovs" test "$(jq -r '[.aovs[].name] | join(" ")' all.json)" = facing
 check "its sliders" test "$(jq -r '[.sliders[] | "\(.name)=\(.value)"] | join(",")' all.json)" = \
     "bands=3,rim=#ffcc88,on=on,mode=plain"
+check "the words of a choice" test "$(jq -c '[.sliders[].words]' all.json)" = \
+    '[null,null,null,[{"name":"plain"},{"name":"warm"}]]'
 check "its kernels" test "$(jq -r '[.kernels[].name] | join(" ")' all.json)" = "aov post"
 expect 2 "no such aov" render "$CUBE" --size 16x12 --quiet --shader all.glsl --aov face -o aov.exr
 said "names those that there are" "there is facing"
@@ -95,13 +97,13 @@ expect 2 "--aov without --shader" render "$CUBE" --aov facing -o aov.exr
 check "its fuel" test "$(jq .fuel all.json)" = 20000
 check "it traces no rays" test "$(jq .traces all.json)" = false
 expect 0 "dump" shader all.glsl --dump spirv
-sed -n '/^  --[as]/s/ *$//p' "$OUT/stdout" >told
+sed -n '/^  --[as]/p' "$OUT/stdout" >told
 cat >want <<'END'
   --aov facing
   --set bands=3 (1 to 8)  steps of light
   --set rim=#ffcc88
   --set on=on  whether
-  --set mode=plain
+  --set mode=plain (plain, warm)
 END
 check "sliders as text: $(tr '\n' ';' <told)" cmp told want
 check "the SPIR-V instructions of a stage beside those of whit's own" \

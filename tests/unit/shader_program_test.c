@@ -126,7 +126,7 @@ TEST(values_that_are_none_are_refused_or_skipped)
                  {"bands=3x", "not `3x`"},
                  {"rim=red", "such as #ffcc88"},
                  {"on=1", "on is on or off"},
-                 {"mode=hot", "no word `hot`"},
+                 {"mode=hot", "mode has no word `hot`; there is plain, warm, cold"},
                  {"band=3", "did you mean `bands`"},
                  {"bands", "NAME=VALUE"},
                  {"=3", "NAME=VALUE"}};

@@ -10,6 +10,7 @@
 #include "app/shader/attempt.h"
 #include "app/shader/extract.h"
 #include "base/file.h"
+#include "base/text.h"
 
 struct shader_options {
     struct job job;
@@ -82,6 +83,16 @@ static void write_value(const whit_slider *slider, char *text, size_t bytes)
     }
 }
 
+/* What --set takes besides the default: " (1 to 8)", " (plain, warm)", "". */
+static void write_range(const whit_slider *slider, char *text, size_t bytes)
+{
+    if (slider->kind == WHIT_SLIDER_NUMBER)
+        text_add(text, bytes, " (%g to %g)", (double)slider->min, (double)slider->max);
+    for (uint32_t i = 0; i < slider->word_count; ++i)
+        text_add(text, bytes, "%s%s", i ? ", " : " (", slider->words[i]);
+    text_add(text, bytes, "%s", slider->word_count ? ")" : "");
+}
+
 static void print_text(const whit_shader *shader, const char *path)
 {
     whit_shader_info info;
@@ -99,11 +110,11 @@ static void print_text(const whit_shader *shader, const char *path)
         printf("  --aov %s\n", info.aovs[i]);
     for (uint32_t i = 0; i < info.slider_count; ++i) {
         const whit_slider *slider = &info.sliders[i];
-        char value[64], range[64] = "";
+        char value[64], range[256] = "";
         write_value(slider, value, sizeof value);
-        if (slider->kind == WHIT_SLIDER_NUMBER)
-            snprintf(range, sizeof range, " (%g to %g)", (double)slider->min, (double)slider->max);
-        printf("  --set %s=%s%s  %s\n", slider->name, value, range, cli_shown(slider->help));
+        write_range(slider, range, sizeof range);
+        printf("  --set %s=%s%s%s%s\n", slider->name, value, range, slider->help[0] ? "  " : "",
+               cli_shown(slider->help));
     }
     printf("  kernels:");
     for (uint32_t i = 0;; ++i) {
@@ -120,6 +131,14 @@ static void print_text(const whit_shader *shader, const char *path)
         printf("  trusted: loops and indices are not bounded\n");
 }
 
+static json_t *list_texts(const char *const *texts, uint32_t count)
+{
+    json_t *list = document_array();
+    for (uint32_t i = 0; i < count; ++i)
+        document_text(document_entry(list), "name", texts[i]);
+    return list;
+}
+
 static void put_slider(json_t *object, const whit_slider *slider)
 {
     char value[64];
@@ -132,14 +151,8 @@ static void put_slider(json_t *object, const whit_slider *slider)
         document_float(object, "min", slider->min);
         document_float(object, "max", slider->max);
     }
-}
-
-static json_t *list_texts(const char *const *texts, uint32_t count)
-{
-    json_t *list = document_array();
-    for (uint32_t i = 0; i < count; ++i)
-        document_text(document_entry(list), "name", texts[i]);
-    return list;
+    if (slider->kind == WHIT_SLIDER_CHOICE)
+        document_put(object, "words", list_texts(slider->words, slider->word_count));
 }
 
 static json_t *list_kernels(const whit_shader *shader)
