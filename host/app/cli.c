@@ -29,6 +29,7 @@ static _Thread_local atomic_bool *muted; /* set while cli_mute silences this thr
 static const char *errors_of;
 static char first_error[1024];
 static volatile sig_atomic_t grace_ms = GRACE_MS;
+static volatile sig_atomic_t is_done; /* see cli_end_soon */
 /* Signal handlers read the one of these two texts that is not being written. */
 static char written_texts[2][64] = {"nothing was written", ""};
 static const char *volatile written_text = written_texts[0];
@@ -266,6 +267,8 @@ static void on_alarm(int number)
 {
     (void)number;
     file_abandon_all();
+    if (is_done && !interrupt_signal)
+        cli_leave(EXIT_FINE);
     cli_put_end(interrupt_signal ? "whit: " : "whit: error: ",
                 interrupt_signal ? "interrupted" : "the time limit has passed");
     cli_leave(interrupt_signal ? 128 + (int)interrupt_signal : EXIT_TIME);
@@ -277,6 +280,12 @@ static bool set_timer(long milliseconds)
     const struct itimerspec when = {
         .it_value = {.tv_sec = milliseconds / 1000, .tv_nsec = milliseconds % 1000 * 1000000L}};
     return has_grace_timer && timer_settime(grace_timer, 0, &when, NULL) == 0;
+}
+
+void cli_end_soon(void)
+{
+    is_done = 1;
+    (void)set_timer(grace_ms);
 }
 
 static void on_interrupt(int number)

@@ -107,6 +107,9 @@ void cli_set_saving(void);
 /* Interrupted work gets `grace_ms` to save its results before the handler ends the process. A
    second signal ends it at once. */
 void cli_keep_what_is_done(int grace_ms);
+/* The work is done and saved, without an error: threads that do not stop within that time, as they
+   may be inside a driver, no longer keep the process from ending. */
+void cli_end_soon(void);
 /* For the message of interrupted work: "12 of 40 WHAT". */
 void cli_set_kept(uint32_t done, uint32_t count, const char *what);
 /* For the message of interrupted work, and of a time limit that has passed: the command that

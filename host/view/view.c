@@ -503,6 +503,8 @@ static whit_result close_all(struct view *view, whit_result result, uint32_t *va
     scenes_end(view);
     shaders_end(view);
     whit_result recorded = replay_close(view);
+    if (result == WHIT_OK && recorded == WHIT_OK && view->params->end)
+        view->params->end();
     prices_stop(view->prices);
     prices_stop(view->panels.measured);
     for (uint32_t i = 0; i < LEAVING_MAX; ++i)

@@ -159,6 +159,14 @@ back: press G, until work, press G | keys.trees = on | work = | words as start |
 once! press Escape | toast = Escape once more quits
 END
 
+    # A closed window does not wait for a driver.
+    export WHIT_TEST_SLOW=driver
+    LIMIT_S=30 play "a kernel that is never done" "$CUBE" $SMALL <<END
+start:
+working! press G, until work = compiling the kernel | keys.trees = off
+close
+END
+
     # The window shows the progress of a slow picture, and the user can switch back before it is done.
     export WHIT_TEST_SLOW=picture
     play "a slow picture" "$CUBE" $SMALL <<END

@@ -155,6 +155,7 @@ static int work(struct job *job, struct view_params *view)
     }
     view->settings = job->settings;
     view->cancel = &cli_cancel;
+    view->end = job->settings.validation ? NULL : cli_end_soon;
     view->tell = job->settings.quiet ? NULL : tell;
     view->save = save_shot;
     view->load_state = load_state;
