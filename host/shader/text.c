@@ -106,8 +106,8 @@ static whit_result copy_source(struct reading *r, const struct place *place,
     return WHIT_OK;
 }
 
-/* Blanks the byte order mark of UTF-8, and makes each CR without LF the end of a line, so that all
-   readers of the text agree about its lines. */
+/* Blanks the byte order mark of UTF-8, vertical tabs and form feeds, as glslang refuses them, and
+   makes each CR without LF the end of a line, so that all readers of the text agree. */
 static void even_out(struct shader_file *file)
 {
     if (strncmp(file->text, "\xef\xbb\xbf", 3) == 0)
@@ -115,6 +115,8 @@ static void even_out(struct shader_file *file)
     for (size_t i = 0; i < file->bytes; ++i) {
         if (file->text[i] == '\r' && file->text[i + 1] != '\n')
             file->text[i] = '\n';
+        if (file->text[i] == '\v' || file->text[i] == '\f')
+            file->text[i] = ' ';
     }
 }
 
@@ -314,7 +316,15 @@ static whit_result read_include(struct reading *r, uint32_t file, struct scan *s
     return follow_include(r, file, line, name);
 }
 
-/* Refuses a byte of a character beyond ASCII, which is not GLSL outside of comments and strings. */
+/* Whether the sign is of no use in GLSL, outside of comments, strings and the words of #error; the
+   compiler's message about it would name another one. */
+static bool is_no_sign(const struct scan *scan)
+{
+    char c = scan->text[0];
+    return (unsigned char)c > 127 || (!scan->in_directive && (c == '@' || c == '$' || c == '`'));
+}
+
+/* Refuses the character of a sign. */
 static whit_result refuse_character(struct reading *r, uint32_t file, const struct scan *scan)
 {
     const char *first = scan->at - 1, *line = first;
@@ -333,7 +343,9 @@ static whit_result refuse_character(struct reading *r, uint32_t file, const stru
                          "the character '%.*s' (U+%04X) is not GLSL", (int)length, first, number);
     else
         shader_error_add(r->log, r->errors, name, scan->token_line, column,
-                         "the byte 0x%02X is not GLSL", byte[0]);
+                         byte[0] > 127 ? "the byte 0x%02X is not GLSL"
+                                       : "the character '%c' is not GLSL",
+                         byte[0]);
     return WHIT_ERROR_INPUT;
 }
 
@@ -352,7 +364,7 @@ static whit_result check_token(struct reading *r, uint32_t file, struct scan *sc
     }
     if (scan->kind == SCAN_STRING && (strstr(scan->text, "//") || strstr(scan->text, "/*")))
         return at(r, file, scan->token_line, "a comment in a string");
-    if (scan->kind == SCAN_SIGN && (unsigned char)scan->text[0] > 127)
+    if (scan->kind == SCAN_SIGN && is_no_sign(scan))
         return refuse_character(r, file, scan);
     if (scan_is(scan, SCAN_SIGN, "#"))
         return at(r, file, scan->token_line,

@@ -233,19 +233,20 @@ TEST_IN(what_is_no_text_is_refused_with_its_line, begin, end)
  * both. */
 TEST_IN(the_files_own_bytes_are_kept, begin, end)
 {
-    static const char own[] = "\xef\xbb\xbf// a\r// b\r\n#if 0\nfloat g();\n#endif\n" FUNCTION;
+    static const char own[] = "\xef\xbb\xbf// a\r\f\v// b\r\n#if 0\nfloat g();\n#endif\n" FUNCTION;
     put_text("a.glsl", own);
     assert_int_equal(read_first(), WHIT_OK);
     assert_int_equal(text.files[0].bytes, sizeof own - 1);
     assert_string_equal(text.files[0].raw, own);
     assert_string_equal(text.files[0].text,
-                        "   // a\n// b\r\n#if 0\n          \n#endif\n" FUNCTION);
+                        "   // a\n  // b\r\n#if 0\n          \n#endif\n" FUNCTION);
     const char *why;
     own_memory char *packed = shader_pack_write(&text, &why);
-    assert_non_null(strstr(packed, "\\xef\\xbb\\xbf// a\\x0d// b\\x0d\n#if 0\nfloat g();\n"));
+    assert_non_null(
+        strstr(packed, "\\xef\\xbb\\xbf// a\\x0d\\x0c\\x0b// b\\x0d\n#if 0\nfloat g();\n"));
 }
 
-TEST_IN(characters_beyond_ascii_are_refused_with_their_column, begin, end)
+TEST_IN(characters_that_are_not_glsl_are_refused_with_their_column, begin, end)
 {
     static const struct {
         uint32_t line, column;
@@ -258,6 +259,7 @@ TEST_IN(characters_beyond_ascii_are_refused_with_their_column, begin, end)
         {3, 1, "/* \xc3\xa4 */ // \xfc\n\n\xf0\x9f\x98\x80\n" FUNCTION, "U+1F600"},
         {1, 2, " \xfc\n" FUNCTION, "the byte 0xFC is not GLSL"},
         {1, 1, "\xc3", "the byte 0xC3 is not GLSL"},
+        {2, 9, "#define USER @$`\nfloat a @ 1.0;\n" FUNCTION, "the character '@' is not GLSL"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         put_text("a.glsl", cases[i].content);
