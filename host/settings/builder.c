@@ -64,16 +64,6 @@ static bool read_numbers(const char *text, const char *numbers, whit_accel_param
     return setting_refuse(why, " `%s`: only binned and spatial take numbers", text);
 }
 
-/* The shortest decimal that reads back as the float. */
-static void write_float(float number, char *text, size_t text_bytes)
-{
-    for (int digits = 6; digits <= 9; ++digits) {
-        snprintf(text, text_bytes, "%.*g", digits, (double)number);
-        if ((float)strtod(text, NULL) == number)
-            break;
-    }
-}
-
 bool builder_read(const char *text, whit_accel_params *trees, char why[SETTING_WHY_BYTES])
 {
     static const char suffix[] = "+opt";
@@ -111,8 +101,9 @@ void builder_write(const whit_accel_params *trees, char *text, size_t text_bytes
 {
     const char *word = value_word(values_build, (int)trees->build);
     char alpha[32], budget[32], numbers[80] = "";
-    write_float(trees->spatial_alpha, alpha, sizeof alpha);
-    write_float(trees->spatial_budget < 0.0f ? 0.0f : trees->spatial_budget, budget, sizeof budget);
+    setting_write_float(trees->spatial_alpha, alpha, sizeof alpha);
+    setting_write_float(trees->spatial_budget < 0.0f ? 0.0f : trees->spatial_budget, budget,
+                        sizeof budget);
     if (trees->bins)
         snprintf(numbers, sizeof numbers, ":%u", trees->bins);
     else if (trees->spatial_alpha != 0.0f && trees->spatial_budget != 0.0f)

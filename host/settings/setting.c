@@ -257,6 +257,15 @@ void setting_write_number(double number, char *text, size_t text_bytes)
     }
 }
 
+void setting_write_float(float number, char *text, size_t text_bytes)
+{
+    for (int digits = 6; digits <= 9; ++digits) {
+        snprintf(text, text_bytes, "%.*g", digits, (double)number);
+        if ((float)strtod(text, NULL) == number)
+            break;
+    }
+}
+
 static bool put(char text[SETTING_VALUE_BYTES], const char *value)
 {
     snprintf(text, SETTING_VALUE_BYTES, "%s", value);

@@ -140,5 +140,7 @@ bool setting_refuse(char why[SETTING_WHY_BYTES], const char *format, ...) WHIT_P
 double setting_number(const char *text, char **end);
 /* The shortest decimal that reads back as `number`. */
 void setting_write_number(double number, char *text, size_t text_bytes);
+/* The shortest decimal that reads back as the float. */
+void setting_write_float(float number, char *text, size_t text_bytes);
 
 #endif

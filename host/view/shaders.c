@@ -300,7 +300,7 @@ static void draw_number(struct view *view, const whit_slider *slider, const char
         sscanf(value, "%lf", &number);
     if (!ui_slider(slider->name, &number, (double)slider->min, (double)slider->max, false))
         return;
-    setting_write_number((double)(float)number, text, sizeof text);
+    setting_write_float((float)number, text, sizeof text);
     set_slider(view, slider, text);
 }
 

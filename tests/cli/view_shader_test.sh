@@ -259,6 +259,8 @@ until shader.hash = $other
 saved: | error = | frame.pixels not as color
 subtracted: press U | compare.mode = difference | compare.other_ids = 0 | compare.other_colors > 100 | compare.b.pixels is frame.pixels of color
 END
+    check "a float is as short as it can be" \
+        test "$(value number render | grep -cE 'bands=[1-8][.][0-9]{1,6}[ ,]')" -eq 1
     for at in number choice color; do
         same frame.made start $at
         same frame.kernels start $at
