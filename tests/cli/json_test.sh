@@ -63,6 +63,7 @@ saved() {
     cat >all.glsl <<'END'
 //@ whit 1
 //@ slider bands 1 8 3 "steps of light"
+//@ choice mode plain,warm
 //@ aov facing
 //@ expect ids == base
 vec4 facing(Surface s) { return vec4(-dot(s.ns, ray_dir())); }
