@@ -14,13 +14,15 @@
 /* The constants below were fitted to the scenes in scenes/ at 64x48 and 92x60, where the estimate
    meets its goals in 43 and 45 of 54 cases. At 76x56, which had no part in that, it does in 41. */
 
-/* The rate of a pixel is taken to lie between these. */
+/* The rate of a pixel, the factor by which its change falls from doubling to doubling, is taken to
+   lie between these. */
 #define RATE_LOW       0.36
 #define RATE_HIGH      0.65
-/* After each doubling an earlier change counts this part of the rate as much as before, because it
-   was measured with fewer samples, and its sign is as likely to be the other. */
+/* Each doubling multiplies the weight of earlier changes by the rate and by this: they were
+   measured with fewer samples, and the signs of two changes are as likely to differ as not. */
 #define FADES          0.8
-/* The error, in units of a pixel's faded changes and of the picture's rate. */
+/* The error of a pixel over the product of the picture's rate and the root of the weighted sum of
+   its squared changes. */
 #define ERROR_A_RATE   2.6
 /* The radiance of rays that were cut, in units of the mean of those that were not: some of them
    would have met highlights. */
