@@ -81,6 +81,9 @@ void whit_scene_get_info(const whit_scene *handle, whit_scene_info *info)
     memcpy(info->lo, handle->pose.lo, sizeof info->lo);
     memcpy(info->hi, handle->pose.hi, sizeof info->hi);
     scene_pose_objects(scene, &handle->pose, info->objects_lo, info->objects_hi);
+    bool part = scene->shown_lo[0] <= scene->shown_hi[0];
+    memcpy(info->home_lo, part ? scene->shown_lo : info->objects_lo, sizeof info->home_lo);
+    memcpy(info->home_hi, part ? scene->shown_hi : info->objects_hi, sizeof info->home_hi);
 }
 
 void whit_scene_get_mesh(const whit_scene *handle, uint32_t index, whit_mesh_info *info)

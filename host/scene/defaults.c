@@ -69,6 +69,8 @@ static whit_result add_camera(struct scene *scene, const struct scene_pose *pose
     };
     memcpy(camera.eye, viewpoint->eye, sizeof camera.eye);
     memcpy(camera.target, viewpoint->target, sizeof camera.target);
+    memcpy(scene->shown_lo, viewpoint->lo, sizeof scene->shown_lo);
+    memcpy(scene->shown_hi, viewpoint->hi, sizeof scene->shown_hi);
     if (scene_add_camera(scene, camera) == SCENE_NONE)
         return WHIT_ERROR_MEMORY;
     note_viewpoint(scene, viewpoint);
@@ -286,6 +288,7 @@ whit_result freeze_add_defaults(struct scene *scene)
     note_tiny(scene, &pose);
     struct light_kinds lights = {0};
     struct viewpoint viewpoint = {.kind = VIEWPOINT_CORNER};
+    double3_no_box(scene->shown_lo, scene->shown_hi);
     if (!scene->camera_count)
         result = add_camera(scene, &pose, &viewpoint);
     if (result == WHIT_OK)

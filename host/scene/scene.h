@@ -294,7 +294,9 @@ struct scene {
     struct texture_ahead *ahead;           /* pictures decoded ahead, while a model is loaded */
     struct roots roots;                    /* folders in which the scene's files may name others */
     uint64_t hash;                         /* of everything above; set by scene_freeze */
-    bool is_model;                         /* by another program: may need more lights */
+    /* The part that whit's own camera shows, if it is the scene's; lo > hi: it shows everything. */
+    double shown_lo[3], shown_hi[3];
+    bool is_model; /* by another program: may need more lights */
     whit_lights lights_wanted;
     double exposure_ev; /* suits what a model's first camera sees; set by scene_freeze */
     bool lacks_memory;  /* a name or a note could not be allocated: scene_freeze will fail */

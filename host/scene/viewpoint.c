@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/same.h"
 #include "base/vec.h"
 #include "scene/sketch.h"
 
@@ -231,6 +232,10 @@ static whit_result look_from_outside(const struct soup *soup, struct viewpoint *
     out->fov_y = VIEW_FOV_Y;
     double distance = -double3_dot(view.eye, view.forward);
     place_view(seen, &view, distance, out);
+    for (int i = 0; out->part && i < 3; ++i) {
+        out->lo[i] = seen->centre[i] - seen->radius * seen->half[i];
+        out->hi[i] = seen->centre[i] + seen->radius * seen->half[i];
+    }
     for (int i = 0; i < 3; ++i)
         out->lamp[i] = out->eye[i] + 0.5 * seen->radius * distance * (view.up[i] - view.right[i]);
     soup_finish(&narrow);
@@ -245,8 +250,13 @@ static void look_from_inside(const struct soup *soup, const struct view *view, d
     out->fov_y = FOV_Y_INSIDE;
     place_view(soup, view, ahead, out);
     place_lamp(soup, view, ahead, lamp);
-    for (int i = 0; i < 3; ++i)
+    /* A view that is fitted to this cube, from where the eye is, has the eye there. */
+    double half = soup->radius * ahead * same_sin(0.5 * FOV_Y_INSIDE) / sqrt(3.0);
+    for (int i = 0; i < 3; ++i) {
         out->lamp[i] = soup->centre[i] + soup->radius * lamp[i];
+        out->lo[i] = out->target[i] - half;
+        out->hi[i] = out->target[i] + half;
+    }
 }
 
 whit_result viewpoint_choose(const struct scene *scene, const struct scene_pose *pose,
@@ -256,6 +266,7 @@ whit_result viewpoint_choose(const struct scene *scene, const struct scene_pose 
     struct view view;
     double ahead = 0.0;
     *out = (struct viewpoint){0};
+    double3_no_box(out->lo, out->hi);
     whit_result result = soup_init(scene, pose, &soup);
     if (result != WHIT_OK)
         return result;

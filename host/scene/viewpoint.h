@@ -18,9 +18,11 @@ struct viewpoint {
     bool part;      /* shows a small part that nearly all triangles are in, floor and sky aside;
                        false: all of the scene */
     bool under_sky; /* the part is inside of a sphere, or half of one, that keeps out light */
-    double
-        lamp[3]; /* world position of a lamp; INSIDE: ahead of the eye, and from there half of the
-                    free distance to the left and up; else to the left of the eye and above it */
+    double lo[3], hi[3]; /* bounds of what is shown: of the part, INSIDE: of a cube around the
+                            target; lo > hi: it is everything */
+    /* World position of a lamp; INSIDE: ahead of the eye, and from there half of the free distance
+       to the left and up; else to the left of the eye and above it. */
+    double lamp[3];
 };
 
 /* Chooses by the scene's triangles at `pose`. The view fits a picture of 4:3; a wider one shows all

@@ -99,8 +99,8 @@ bool view_bounds(const struct view *view, double lo[3], double hi[3])
 {
     if (!view->scene)
         return false;
-    memcpy(lo, view->scene->info.objects_lo, 3 * sizeof *lo);
-    memcpy(hi, view->scene->info.objects_hi, 3 * sizeof *hi);
+    memcpy(lo, view->scene->info.home_lo, 3 * sizeof *lo);
+    memcpy(hi, view->scene->info.home_hi, 3 * sizeof *hi);
     return lo[0] <= hi[0];
 }
 

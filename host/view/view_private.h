@@ -158,7 +158,7 @@ const char *view_failure(const struct view *view);
 void view_log_failure(const struct view *view);
 /* The errors to show, one a line; "": none. */
 const char *view_error(const struct view *view);
-/* The bounds of the scene's objects in world space; false: no scene is loaded, or it is empty. */
+/* The bounds, in world space, of what Home shows; false: no scene is loaded, or it is empty. */
 bool view_bounds(const struct view *view, double lo[3], double hi[3]);
 double view_aspect(const struct view *view);
 

@@ -107,6 +107,9 @@ typedef struct whit_scene_info {
     double lo[3], hi[3];                 /* world bounds at time 0; lo > hi when empty */
     double objects_lo[3], objects_hi[3]; /* the bounds without a floor that is much wider than the
                                             objects on it */
+    double home_lo[3], home_hi[3]; /* likewise, or bounds of the part that whit's own camera shows,
+                                      if the file has none and that part is small; in a room a cube
+                                      in it */
     whit_environment_kind environment;
     bool environment_made_by_whit;
     double exposure_ev; /* a suitable exposure for the first camera's view of a model, in steps of

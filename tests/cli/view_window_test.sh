@@ -50,6 +50,18 @@ END
     done
 fi
 
+# Home stays in a room, where whit's own camera is.
+if part 0 2; then
+    printf 'v %s\n' '-3 0 -2' '3 0 -2' '3 0 2' '-3 0 2' '-3 3 -2' '3 3 -2' '3 3 2' '-3 3 2' >room.obj
+    printf 'f %s\n' '4 3 2 1' '5 6 7 8' '2 6 5 1' '4 8 7 3' '1 5 8 4' '3 7 6 2' >>room.obj
+    play "a room" room.obj $SMALL <<END
+start:
+near: wheel 0 3
+home: press Home | frame.ids as start
+END
+    differs frame.ids start near
+fi
+
 # While the camera is dragged the window is drawn when there is a new picture, not at each move of the mouse.
 if part 0 2; then
     play "a drag" "$SCENES/spin.json" $SMALL <<END

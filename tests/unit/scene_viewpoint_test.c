@@ -239,6 +239,11 @@ static bool shows_ball(struct scene *scene)
     for (int i = 0; part && i < 3; ++i)
         assert_true(fabs(camera->eye[i] + distance * forward[i] - to_ball[i]) < 0.2);
     assert_int_equal(part, distance < 5.0);
+    assert_int_equal(part, scene->shown_lo[0] <= scene->shown_hi[0]);
+    for (int k = 0; part && k < 3; ++k) {
+        assert_true(fabs(scene->shown_lo[k] - to_ball[k] + 1.0) < 0.1);
+        assert_true(fabs(scene->shown_hi[k] - to_ball[k] - 1.0) < 0.1);
+    }
     return part;
 }
 

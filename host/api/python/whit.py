@@ -93,7 +93,8 @@ SceneInfo = _struct(
     ("mesh_count instance_count node_count material_count texture_count light_count camera_count note_count"
      " effect_count textures_missing", c_uint32),
     ("mesh_triangle_count triangle_count sphere_count file_bytes hash", c_uint64), ("channel_count", c_uint32),
-    ("time_begin_s time_end_s", c_double), ("one_tree", c_bool), ("lo hi objects_lo objects_hi", c_double * 3),
+    ("time_begin_s time_end_s", c_double), ("one_tree", c_bool),
+    ("lo hi objects_lo objects_hi home_lo home_hi", c_double * 3),
     ("environment", EnvironmentKind), ("environment_made_by_whit", c_bool), ("exposure_ev", c_double))
 InstanceInfo = _struct("InstanceInfo", ("name", c_char_p), ("mesh", c_uint32),
                        ("object_to_world", c_double * 12))
