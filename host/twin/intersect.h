@@ -63,12 +63,16 @@ static inline float vec3_largest_magnitude(struct vec3 p)
 }
 
 /* For NUMERICS_EXACT. Vulkan bounds the error of quotients (2.5 ulp) only for divisors in
-   2^-126..2^126; with others the shear is NaN, and no filter decides. */
+   2^-126..2^126; with others the shear is NaN, and no filter decides. The reciprocal of a denormal
+   may be infinite, as if the ray did not move on that axis; NaN bounds nothing there. */
 static inline void bound_ray_setup(struct ray_setup *ray)
 {
     float size = vec3_largest_magnitude(ray->dir);
     if (!(size > 7.8886090522101181e-31f && size < 1.2676506002282294e+30f))
         ray->shear = vec3_make(NAN, NAN, NAN);
+    ray->inv_dir.x = fpclassify(ray->dir.x) == FP_SUBNORMAL ? NAN : ray->inv_dir.x;
+    ray->inv_dir.y = fpclassify(ray->dir.y) == FP_SUBNORMAL ? NAN : ray->inv_dir.y;
+    ray->inv_dir.z = fpclassify(ray->dir.z) == FP_SUBNORMAL ? NAN : ray->inv_dir.z;
 }
 
 #define CLIP_MARGIN (1.0f / 524288.0f)

@@ -260,7 +260,7 @@ static bool is_reached(const struct walk *walk, const struct candidate *m, uint3
     const struct hit_place so_far = {(double)walk->hi, walk->hit->instance, walk->hit->primitive};
     const struct hit_place known = {(double)walk->hit_before, walk->skip_instance,
                                     walk->skip_primitive};
-    return m->met && hit_comes_before(lo, so_far) && hit_comes_before(known, hi);
+    return m->met && hit_comes_before(lo, so_far) && (!walk->next || hit_comes_before(known, hi));
 }
 
 static bool accept_candidate(struct walk *walk, const struct ray_setup *ray, struct candidate *m,

@@ -47,10 +47,16 @@ RaySetup make_ray_setup(vec3 origin, vec3 dir)
     shear.x = turned.x / turned.z;
     shear.y = turned.y / turned.z;
     // Vulkan bounds the error of quotients (2.5 ulp) only for divisors in 2^-126..2^126. For others
-    // the shear is NaN, with which no filter decides.
-    float length = abs(turned.z);
-    if (SPEC_NUMERICS == NUMERICS_EXACT && !(length > 7.8886090522101181e-31 && length < 1.2676506002282294e+30))
-        shear = vec3(uintBitsToFloat(0x7fc00000u));
+    // the shear is NaN, with which no filter decides. The reciprocal of a denormal may be infinite, as
+    // if the ray did not move on that axis; NaN bounds nothing there.
+    if (SPEC_NUMERICS == NUMERICS_EXACT) {
+        const float nan = uintBitsToFloat(0x7fc00000u);
+        float length = abs(turned.z);
+        if (!(length > 7.8886090522101181e-31 && length < 1.2676506002282294e+30))
+            shear = vec3(nan);
+        uvec3 bits = floatBitsToUint(dir) & 0x7fffffffu;
+        ray.inv_dir = mix(inv_dir, vec3(nan), lessThan(bits - 1u, uvec3(0x7fffffu)));
+    }
     ray.shear = shear;
     return ray;
 }

@@ -33,10 +33,13 @@ static inline bool level_enters(const struct level *level, const struct ray_setu
                                 const float lo[3], const float hi[3], float t_min, float t_max,
                                 float *t_near, float *t_far)
 {
-    if (level->exact)
+    struct ray_setup bounded = *ray;
+    if (level->exact) {
         t_min = fmaxf(t_min, 0x1p-144f); /* NEAR_MIN */
-    slab_interval(ray, vec3_sub(vec3_load(lo), ray->origin), vec3_sub(vec3_load(hi), ray->origin),
-                  t_min, t_near, t_far);
+        bound_ray_setup(&bounded);
+    }
+    slab_interval(&bounded, vec3_sub(vec3_load(lo), ray->origin),
+                  vec3_sub(vec3_load(hi), ray->origin), t_min, t_near, t_far);
     if (level->exact)
         *t_near = float_of_bits(float_bits(*t_near) - 32); /* NEAR_STEPS */
     return *t_near <= *t_far && *t_near <= t_max;

@@ -155,6 +155,37 @@ TEST(keys_at_the_ends_of_floats_do_not_depend_on_the_tree)
     assert_int_equal(other, 0);
 }
 
+/* Directions with denormal components, whose reciprocals may be infinite, at a tiny terrain, which
+   they take a ray to in a finite t. */
+TEST(denormal_directions_are_met_exactly)
+{
+    random_state = 12;
+    struct soup soup = soup_terrain(6);
+    for (uint32_t i = 0; i < 9 * soup.count; ++i)
+        soup.positions[i] *= 0x1p-40f;
+    soup_box(&soup);
+    own_world world = world_of_soup(soup, (whit_accel_params){.leaf_limit = 1});
+    own_rational *rational = rational_create(world.accel);
+    uint32_t met = 0, other = 0;
+    for (uint32_t i = 0; i < 20000; ++i) {
+        struct vec3 to = point_of_record(world.accel, i % 2);
+        struct gpu_ray ray = {.t_max = INFINITY};
+        vec3_store(ray.origin, vec3_add(to, random_point(0x1p-40f)));
+        if (i % 3 == 0)
+            ray.origin[i / 3 % 3] = (&to.x)[i / 3 % 3] + 0x1p-10f; /* one component is normal */
+        for (int k = 0; k < 3; ++k)
+            ray.dir[k] = ((&to.x)[k] - ray.origin[k]) * 0x1p-94f;
+        struct gpu_hit hit = level_trace(&levels[1], world.accel, i % ORDERS, false, &ray);
+        struct rational_hit exact;
+        rational_trace(rational, &ray, &(struct rational_query){.brute = true}, &exact);
+        met += exact.primitive != HIT_NONE;
+        other += hit.primitive != exact.primitive || hit.t != exact.t;
+    }
+    print_message("  %u of 20000 rays hit, %u of them otherwise at exact\n", met, other);
+    assert_true(met > 5000);
+    assert_int_equal(other, 0);
+}
+
 /* The same of spheres: as they are, in instances, and with rings beside them. */
 TEST(trees_and_orders_of_spheres_do_not_matter)
 {

@@ -1,4 +1,3 @@
-#include <math.h>
 #include <stdlib.h>
 
 #include "app/arguments.h"
@@ -18,7 +17,7 @@ static const struct setting_value values_on[] = {{"device", WHIT_TRACE_DEVICE, N
 struct trace {
     const char *rays_path, *output;
     uint32_t on; /* whit_trace_on */
-    bool any, exact;
+    bool any;
     struct ray_file input;
     uint64_t done_count;
     double trace_ms;
@@ -44,25 +43,6 @@ static const struct setting options[] = {
     {0},
 };
 
-/* Refuses rays with a subnormal direction component (below 2^-126). Box tests take it for 0 and
-   would miss boxes that exact arithmetic hits (docs/numerics-method.md). */
-static whit_result check_exact(const struct trace *trace, uint64_t count)
-{
-    for (uint64_t i = 0; i < count; ++i) {
-        for (int k = 0; k < 3; ++k) {
-            float d = trace->rays[i].dir[k];
-            if (fpclassify(d) != FP_SUBNORMAL)
-                continue;
-            cli_error("%s: ray %llu: %g in its direction is below 2^-126, which --numerics exact "
-                      "does not answer",
-                      cli_shown(trace->rays_path), (unsigned long long)(trace->done_count + i),
-                      (double)d);
-            return WHIT_ERROR_INPUT;
-        }
-    }
-    return WHIT_OK;
-}
-
 static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
                                 struct cli_progress *progress)
 {
@@ -73,8 +53,6 @@ static whit_result trace_chunks(struct trace *trace, whit_renderer *renderer,
         if (result != WHIT_OK || count == 0)
             return result;
         result = job_still_wanted();
-        if (result == WHIT_OK && trace->exact)
-            result = check_exact(trace, count);
         if (result != WHIT_OK)
             return result;
         double start_ms = whit_clock_ms();
@@ -105,7 +83,6 @@ static whit_result prepare(struct job *job, struct trace *trace, whit_renderer *
 {
     whit_renderer_params params = settings_picture(&job->settings);
     params.cancel = &cli_cancel;
-    trace->exact = params.numerics == WHIT_NUMERICS_EXACT;
     whit_result result = ray_file_open(trace->rays_path, &trace->input);
     if (result == WHIT_OK)
         result = allocate(trace);
