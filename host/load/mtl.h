@@ -36,7 +36,8 @@ struct mtl_entry {
     float colors[MTL_COLOR_COUNT][3];
     float numbers[MTL_NUMBER_COUNT];
     bool has_color[MTL_COLOR_COUNT], has_number[MTL_NUMBER_COUNT];
-    bool d_by_tr; /* numbers[MTL_D] is 1 - Tr */
+    bool d_by_tr;  /* numbers[MTL_D] is 1 - Tr */
+    bool d_of_all; /* every material of the model's libraries has `d 0` */
     struct mtl_texture maps[MTL_MAP_COUNT];
 };
 

@@ -292,10 +292,12 @@ static void set_opacity(struct scene *scene, const struct mtl_entry *entry,
                         struct scene_material *out)
 {
     float d = entry->has_number[MTL_D] ? entry->numbers[MTL_D] : 1.0f;
-    if (entry->d_by_tr && d <= 0) { /* MeshLab writes the opacity as Tr */
+    /* MeshLab writes the opacity as Tr, and other programs the transparency as d. */
+    if ((entry->d_by_tr || entry->d_of_all) && d <= 0) {
         scene_note(scene, SCENE_NOTE_INFO,
-                   "%s:%u: material `%s`: Tr 1 is drawn as opaque: nothing would be seen of it",
-                   path_name(entry->file), entry->line, text_token(entry->name).text);
+                   "%s:%u: material `%s`: %s is drawn as opaque: nothing would be seen of it",
+                   path_name(entry->file), entry->line, text_token(entry->name).text,
+                   entry->d_by_tr ? "Tr 1" : "d 0, as all materials have,");
         d = 1;
     }
     out->opacity = fminf(fmaxf(d, 0.0f), 1.0f);

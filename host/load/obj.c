@@ -470,6 +470,16 @@ static whit_result read_sibling(struct scene *scene, const char *path, struct mt
     return result;
 }
 
+static void mark_invisible(struct mtl_library *library)
+{
+    bool all = true;
+    for (uint32_t i = 0; i < library->count; i++)
+        all =
+            all && library->entries[i].has_number[MTL_D] && library->entries[i].numbers[MTL_D] <= 0;
+    for (uint32_t i = 0; i < library->count; i++)
+        library->entries[i].d_of_all = all;
+}
+
 whit_result obj_read_libraries(struct scene *scene, const char *path, const char *text,
                                struct mtl_library *library)
 {
@@ -488,6 +498,7 @@ whit_result obj_read_libraries(struct scene *scene, const char *path, const char
     }
     if (result == WHIT_OK && read.count == 0 && !scene->roots.is_input)
         result = read_sibling(scene, path, library, &read);
+    mark_invisible(library);
     key_table_finish(&read);
     return result;
 }

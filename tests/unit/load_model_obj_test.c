@@ -331,6 +331,8 @@ static const struct {
     {"Tr 1.0\nillum 7\n", .floats = {IS(transmission[0], 1)}, .fresnel = true},
     {"Tr 0.25\nillum 2\n", .floats = {IS(opacity, 0.75)}, .alpha = SCENE_ALPHA_BLEND},
     {"Tr 1.0\nillum 2\n", .floats = {IS(opacity, 1)}, .note = "Tr 1 is drawn as opaque"},
+    {"d 0\nillum 2\n", .floats = {IS(opacity, 1)}, .note = "d 0, as all materials have, is drawn"},
+    {"d 0\nnewmtl other\nd 0.5\n", .floats = {IS(opacity, 0)}, .alpha = SCENE_ALPHA_BLEND},
     {"illum 10\n", .shadow_catcher = true},
     {"Ka 0.2 0 0\nKd 0 0 0\nKs 1 1 1\nNs 1\n", /* zeros that are meant */
      .floats = {IS(ambient[0], 0.2), IS(ambient[1], 0), IS(diffuse[0], 0), IS(specular[0], 1)}},
