@@ -1,9 +1,11 @@
 /* Defaults for a scene whose file has no camera, light or environment. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
+#include "base/same.h"
 #include "base/vec.h"
 #include "scene/exposure.h"
 #include "scene/freeze.h"
@@ -21,6 +23,7 @@ static const double LIT_NEARLY = 0.9;
 /* Where even with the added directional light less than this share is lit, the camera is taken to
    be in a closed box, and a lamp is added: shadows alone would leave more lit. */
 static const double BOXED = 0.25;
+static const double WIDEST = 4.0;
 
 /* Lights that were added to a scene: whit's own light (`key`), lights made from emissive surfaces
    (`emitters`), whose intensity was scaled (`exposed`). `partial`: lights of a model leave more
@@ -51,6 +54,48 @@ static void note_viewpoint(struct scene *scene, const struct viewpoint *viewpoin
                                      "and sky aside"
                                    : "all of it",
                    places[viewpoint->kind]);
+}
+
+/* Whether a part of the scene's box may be in a camera's picture, which is at most WIDEST times as
+   wide as high. */
+static bool may_see(const struct scene_camera *camera, const struct scene_pose *pose)
+{
+    double forward[3], right[3], up[3];
+    uint32_t outside[5] = {0}; /* corners that are behind, to the right, left, above, below */
+    bool parallel = camera->kind == WHIT_CAMERA_ORTHOGRAPHIC;
+    double half = parallel ? 0.5 * (double)camera->height : same_tan(0.5 * (double)camera->fov_y);
+    scene_camera_axes(camera, forward, right, up);
+    for (int corner = 0; corner < 8; ++corner) {
+        double way[3];
+        for (int k = 0; k < 3; ++k)
+            way[k] = (corner >> k & 1 ? pose->hi[k] : pose->lo[k]) - camera->eye[k];
+        double along = double3_dot(way, forward), tall = parallel ? half : half * along;
+        double aside = double3_dot(way, right), rise = double3_dot(way, up);
+        outside[0] += along <= 0.0;
+        outside[1] += aside > WIDEST * tall, outside[2] += -aside > WIDEST * tall;
+        outside[3] += rise > tall, outside[4] += -rise > tall;
+    }
+    for (int i = 0; i < 5; ++i) {
+        if (outside[i] == 8)
+            return false;
+    }
+    return true;
+}
+
+/* Drops the cameras of a model in which nothing moves if all of them look past it. */
+static void drop_blind_cameras(struct scene *scene, struct scene_pose *pose)
+{
+    bool any = !scene->is_model || scene->channel_count > 0 || pose->lo[0] > pose->hi[0];
+    for (uint32_t i = 0; i < pose->camera_count; ++i)
+        any = any || pose->cameras[i].kind == WHIT_CAMERA_PANORAMA ||
+              may_see(&pose->cameras[i], pose);
+    if (any || !scene->camera_count)
+        return;
+    scene_note(scene, SCENE_NOTE_WARNING, "no camera of the file sees anything: dropped %u",
+               scene->camera_count);
+    for (uint32_t i = 0; i < scene->camera_count; ++i)
+        free(scene->cameras[i].name);
+    scene->camera_count = pose->camera_count = 0;
 }
 
 static whit_result add_camera(struct scene *scene, const struct scene_pose *pose,
@@ -289,6 +334,7 @@ whit_result freeze_add_defaults(struct scene *scene)
     struct light_kinds lights = {0};
     struct viewpoint viewpoint = {.kind = VIEWPOINT_CORNER};
     double3_no_box(scene->shown_lo, scene->shown_hi);
+    drop_blind_cameras(scene, &pose);
     if (!scene->camera_count)
         result = add_camera(scene, &pose, &viewpoint);
     if (result == WHIT_OK)

@@ -379,6 +379,39 @@ TEST(animations_fill_the_picture)
     assert_true(slope[1] > 0.85 && slope[1] < 0.95);
 }
 
+/* Cameras of a model, of which some or all look past a box: in the latter case whit adds its own.
+ */
+TEST(cameras_that_see_nothing_are_dropped)
+{
+    const struct {
+        double eye[3], target[3];
+        bool blind, parallel;
+    } rows[] = {{{0, 0, 9}, {0, 0, 0}, false, false}, {{0, 0, 9}, {0, 0, 99}, true, false},
+                {{0, 0, 9}, {0, 9, 0}, true, false},  {{0, 0, 9}, {0, -9, 0}, true, false},
+                {{0, 0, 9}, {9, 0, 7}, true, false},  {{0, 0, 9}, {-9, 0, 7}, true, false},
+                {{0, 0, 9}, {0, 3, 0}, false, false}, {{0, 0, 0.5}, {0, 0, 99}, false, false},
+                {{0, 0, 9}, {0, 0, 0}, false, true},  {{0, 0, 9}, {0, 0, 99}, true, true},
+                {{0, 9, 9}, {0, 9, 0}, true, true}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+        for (int other = 0; other < 3; ++other) {
+            own_scene *scene = empty_scene();
+            scene_put(scene, mesh_box(2, 2, 2), NULL);
+            if (other == 1) /* which sees it */
+                scene_put_camera(scene, (const double[]){9, 0, 0}, (const double[]){0, 0, 0}, 0.7);
+            scene_put_camera(scene, rows[i].eye, rows[i].target, 0.7);
+            struct scene_camera *camera = &scene->cameras[scene->camera_count - 1];
+            camera->kind = rows[i].parallel ? WHIT_CAMERA_ORTHOGRAPHIC : WHIT_CAMERA_PERSPECTIVE;
+            camera->height = 4.0f;
+            scene->is_model = other < 2;
+            scene_ready(scene);
+            bool dropped = rows[i].blind && other == 0;
+            assert_int_equal(scene_noted(scene, "no camera of the file sees anything"), dropped);
+            assert_int_equal(scene->cameras[0].made_by_whit, dropped);
+            assert_int_equal(scene->camera_count, other == 1 ? 2 : 1);
+        }
+    }
+}
+
 /* A floor under a lamp that glows with `emission`, both stated in `file`. */
 static struct scene *lamp_scene(float emission, const char *file)
 {
