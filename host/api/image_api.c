@@ -87,8 +87,8 @@ whit_result whit_image_save_layers(const whit_image *image, const whit_image_lay
                                    uint32_t layer_count, const char *path, const whit_text *texts,
                                    uint32_t text_count, const whit_log *log)
 {
-    struct image_layer items[IMAGE_LAYERS_MAX];
-    for (uint32_t i = 0; i < layer_count && i < IMAGE_LAYERS_MAX; ++i)
+    struct image_layer items[WHIT_LAYERS_MAX];
+    for (uint32_t i = 0; i < layer_count && i < WHIT_LAYERS_MAX; ++i)
         items[i] = (struct image_layer){layers[i].name, &layers[i].image->image};
     return image_save(log, &image->image, items, layer_count, path, texts, text_count);
 }

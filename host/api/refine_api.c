@@ -12,7 +12,7 @@
 struct part {
     struct image color;
     struct image cuts;                  /* WHIT_AOV_CUTS */
-    struct image aovs[SHADER_AOVS_MAX]; /* the shader's AOVs */
+    struct image aovs[WHIT_LAYERS_MAX]; /* the shader's AOVs */
     uint32_t aov_count;                 /* 0 after whit_refine_begin, whose samples have no AOVs */
     whit_stats stats;
     double unshadowed; /* the part of the bail-out's bound that does not grow with cut weights */

@@ -153,7 +153,7 @@ static bool is_new_layer(const struct image_layer *layers, uint32_t index)
 static whit_result check_layers(const whit_log *log, const struct image *image,
                                 const struct image_layer *layers, uint32_t count, const char *path)
 {
-    bool fit = count <= IMAGE_LAYERS_MAX && (count == 0 || image_format_of(path) == IMAGE_EXR);
+    bool fit = count <= WHIT_LAYERS_MAX && (count == 0 || image_format_of(path) == IMAGE_EXR);
     for (uint32_t i = 0; fit && i < count; ++i) {
         const char *name = layers[i].name;
         size_t length = strcspn(name, "."); /* a dot stands before the channel */
@@ -173,7 +173,7 @@ static whit_result check_layers(const whit_log *log, const struct image *image,
         return WHIT_OK;
     return log_failure(log, WHIT_ERROR_USAGE,
                        "%s: an .exr alone keeps images beside another one, up to %d of its size",
-                       path, IMAGE_LAYERS_MAX);
+                       path, WHIT_LAYERS_MAX);
 }
 
 /* The keywords of PNG: Latin-1 without spaces that its readers drop. */

@@ -37,13 +37,12 @@ struct image_layer {
     const char *name;
     const struct image *image;
 };
-enum { IMAGE_LAYERS_MAX = 16 };
 
 /* Saves an image by the path's extension. .png: 8-bit sRGB, clamped, with alpha if there are 4
    channels; non-finite pixels are magenta and counted in a warning. .exr: 32-bit float, or integers
    as UINT channels. .pfm: 32-bit float RGB or grey. Atomic. Errors are logged with the path.
    `texts`: the recipe, as PNG text chunks or EXR string attributes; PFM cannot have any.
-   WHIT_ERROR_USAGE for layers in another format than .exr, and for more than IMAGE_LAYERS_MAX. */
+   WHIT_ERROR_USAGE for layers in another format than .exr, and for more than WHIT_LAYERS_MAX. */
 WHIT_CHECK whit_result image_save(const whit_log *log, const struct image *image,
                                   const struct image_layer *layers, uint32_t layer_count,
                                   const char *path, const whit_text *texts, uint32_t text_count);

@@ -323,8 +323,8 @@ static bool read_aov(struct line *line)
         return complain(line, "an aov has a name of letters, digits and _, and nothing more");
     if (!is_new_name(line, name))
         return false;
-    if (shader->aov_count == SHADER_AOVS_MAX)
-        return complain(line, "a file has at most %d aovs", SHADER_AOVS_MAX);
+    if (shader->aov_count == WHIT_LAYERS_MAX)
+        return complain(line, "a file has at most %d aovs", WHIT_LAYERS_MAX);
     if (!stands_before_function(line, name))
         return complain(line, "`//@ aov %s` stands before `vec4 %s(Surface s)`, without const",
                         name, name);

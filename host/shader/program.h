@@ -14,7 +14,6 @@ enum {
     SHADER_HELP_BYTES = 128,
     SHADER_WORDS_MAX = 16,
     SHADER_EXPECTATIONS_MAX = 16,
-    SHADER_AOVS_MAX = 16,
     SHADER_FUEL_USUAL = 10000,
     SHADER_FUEL_MAX = 30000, /* users' part of the 65,535 that lavapipe allows a group */
 };
@@ -55,8 +54,8 @@ struct whit_shader {
     uint32_t slider_count, value_count;
     whit_shader_expectation expectations[SHADER_EXPECTATIONS_MAX];
     uint32_t expectation_count;
-    struct shader_aov aovs[SHADER_AOVS_MAX];
-    const char *aov_names[SHADER_AOVS_MAX];
+    struct shader_aov aovs[WHIT_LAYERS_MAX];
+    const char *aov_names[WHIT_LAYERS_MAX];
     uint32_t aov_count;
     struct shader_box box;
     struct shader_code codes[HOOK_KERNEL_COUNT]; /* no words: no hook is part of the kernel */

@@ -38,7 +38,7 @@ typedef struct whit_image_layer {
 } whit_image_layer;
 /* As whit_image_save, for an .exr, with further images of 4 floats and the same size as channels
    NAME.R, .G, .B and .A. Their names differ, and have 1 to 200 bytes and no dots. WHIT_ERROR_USAGE
-   too for other formats, other names, and for more than 16 layers. */
+   too for other formats, other names, and for more than WHIT_LAYERS_MAX layers. */
 WHIT_CHECK whit_result whit_image_save_layers(const whit_image *image,
                                               const whit_image_layer *layers, uint32_t layer_count,
                                               const char *path, const whit_text *texts,

@@ -18,6 +18,8 @@ void whit_memory_destroy(void *memory);
 #define WHIT_NONE           UINT32_MAX /* no primitive, no instance: a miss */
 /* The instance of hits on the shape of a user's intersect(); their primitive is 0. */
 #define WHIT_INSTANCE_SHAPE UINT32_C(0x7fffffff)
+/* The most images beside the colour that a file may have, and aovs of a shader. */
+#define WHIT_LAYERS_MAX     64
 
 typedef struct whit_scene whit_scene;       /* geometry, materials, lights, cameras */
 typedef struct whit_accel whit_accel;       /* trees over one scene, on the CPU */

@@ -1,4 +1,4 @@
-// A value beside the colour: `//@ aov NAME` stands before a function NAME, of which a file may have 16.
+// A value beside the colour: `//@ aov NAME` stands before a function NAME, of which a file may have 64.
 // It is called for what a camera ray hits first. A pixel has the mean of its samples; a sample that
 // hits nothing counts as 0. An EXR has it as NAME.R, .G, .B and .A, and --aov NAME shows it.
 //

@@ -93,6 +93,10 @@ said "names those that there are" "there is facing"
 expect 0 "an aov" render "$CUBE" --size 16x12 --quiet --shader all.glsl --aov facing -o aov.exr
 expect 0 "beside the colour" render "$CUBE" --size 16x12 --quiet --shader all.glsl -o both.exr
 check "it is in both files" test "$(grep -ac facing.R both.exr) $(grep -ac facing.R aov.exr)" = "1 0"
+seq 64 | sed 's|.*|//@ aov a&\nvec4 a&(Surface s) { return vec4(&.0); }|' >many.glsl
+expect 0 "as many aovs as may be" render "$CUBE" --size 16x12 --quiet --shader many.glsl -o many.exr
+check "are all in the file" test "$(grep -aoE 'a[0-9]+[.]R' many.exr | sort -u | wc -l)" -eq 64
+expect 0 "the last one" render "$CUBE" --size 16x12 --quiet --shader many.glsl --aov a64 -o last.exr
 expect 2 "--aov without --shader" render "$CUBE" --aov facing -o aov.exr
 check "its fuel" test "$(jq .fuel all.json)" = 20000
 check "it traces no rays" test "$(jq .traces all.json)" = false

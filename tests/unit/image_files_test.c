@@ -423,6 +423,8 @@ TEST_IN(exr_keeps_layers_beside_the_colour, folder_begin, folder_end)
     exr_read_layer(path, name, &loaded);
     assert_images_equal(&third, &loaded);
     assert_int_equal(image_save(&warnings_log, &color, layers, 3, path, NULL, 0), WHIT_ERROR_USAGE);
+    assert_int_equal(image_save(&warnings_log, &color, layers, WHIT_LAYERS_MAX + 1, path, NULL, 0),
+                     WHIT_ERROR_USAGE);
     assert_int_equal(image_save(&warnings_log, &color, layers, 2, in_folder("a.png"), NULL, 0),
                      WHIT_ERROR_USAGE);
     const char *const wrong[] = {"a", "", "a.b"};

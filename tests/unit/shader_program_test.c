@@ -265,22 +265,22 @@ TEST(a_side_of_the_box_may_have_no_length)
 
 TEST(aovs_stand_before_their_functions)
 {
-    char text[2048] = "//@ slider x 0 1 0\n";
-    for (int i = 0; i < SHADER_AOVS_MAX; ++i)
+    char text[8192] = "//@ slider x 0 1 0\n";
+    for (int i = 0; i < WHIT_LAYERS_MAX; ++i)
         snprintf(text + strlen(text), sizeof text - strlen(text),
                  "//@ aov a%d\n// what it is\nvec4 a%d(in Surface s) { return vec4(x); }\n", i, i);
     size_t full = strlen(text);
     assert_int_equal(read_shader(text), WHIT_OK);
-    assert_int_equal(shader.aov_count, SHADER_AOVS_MAX);
-    assert_string_equal(shader.aov_names[15], "a15");
+    assert_int_equal(shader.aov_count, WHIT_LAYERS_MAX);
+    assert_string_equal(shader.aov_names[63], "a63");
     static const char *const more[][2] = {
-        {"//@ aov b\nvec4 b(Surface s) { return vec4(0); }\n", "at most 16 aovs"},
+        {"//@ aov b\nvec4 b(Surface s) { return vec4(0); }\n", "at most 64 aovs"},
         {"//@ aov a3\n", "an aov `a3` already, in line 11"},
         {"//@ slider a3 0 1 0\n", "an aov `a3` already"},
         {"//@ aov x\n", "a choice `x` already"}};
     for (size_t i = 0; i < sizeof more / sizeof *more; ++i) {
         strcpy(text + full, more[i][0]);
-        refuse_shader(text, 2 + 3 * SHADER_AOVS_MAX, more[i][1]);
+        refuse_shader(text, 2 + 3 * WHIT_LAYERS_MAX, more[i][1]);
     }
 }
 

@@ -13,7 +13,7 @@ whit_result layers_read(const whit_shader *shader, whit_renderer *renderer,
     const whit_shader_info info = job_shader_info(shader);
     whit_result result = WHIT_OK;
     *layers = (struct layers){0};
-    for (uint32_t i = 0; result == WHIT_OK && i < info.aov_count && i < LAYERS_MAX; ++i) {
+    for (uint32_t i = 0; result == WHIT_OK && i < info.aov_count; ++i) {
         whit_image **image = &layers->images[i];
         result = renderer ? whit_renderer_image(renderer, (whit_aov)(WHIT_AOV_SHADER + i), image)
                           : whit_refine_aov(refine, i, image);

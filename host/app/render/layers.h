@@ -6,12 +6,10 @@
 
 struct recipe;
 
-enum { LAYERS_MAX = 16 };
-
 /* Names live as long as the shader. A zeroed one has none. */
 struct layers {
-    whit_image_layer items[LAYERS_MAX];
-    whit_image *images[LAYERS_MAX]; /* the images of the items, owned */
+    whit_image_layer items[WHIT_LAYERS_MAX];
+    whit_image *images[WHIT_LAYERS_MAX]; /* the images of the items, owned */
     uint32_t count;
 };
 
