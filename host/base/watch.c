@@ -184,14 +184,32 @@ static void add_one(struct watch *watch, const char *path, int64_t since_ns)
     }
 }
 
-void watch_add(struct watch *watch, const char *path, int64_t since_ns)
+static bool is_link(const char *path)
 {
     struct stat info;
+    return lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
+}
+
+/* Adds the links among the folders of a file. */
+static void add_links(struct watch *watch, const char *path, int64_t since_ns)
+{
+    char *part = string_copy(path);
+    for (char *slash = part; slash && (slash = strchr(slash + 1, '/'));) {
+        *slash = '\0';
+        if (is_link(part))
+            add_one(watch, part, since_ns);
+        *slash = '/';
+    }
+    free(part);
+}
+
+void watch_add(struct watch *watch, const char *path, int64_t since_ns)
+{
     if (!watch || is_input(path))
         return;
     add_one(watch, path, since_ns);
-    bool is_link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
-    char *target = is_link ? realpath(path, NULL) : NULL;
+    add_links(watch, path, since_ns);
+    char *target = is_link(path) ? realpath(path, NULL) : NULL;
     if (target)
         add_one(watch, target, since_ns);
     free(target);

@@ -21,7 +21,8 @@ void watch_add(struct watch *watch, const char *path, int64_t since_ns);
 int64_t watch_now_ns(void);
 void watch_clear(struct watch *watch); /* stops watching all files */
 /* Whether a watched file was written and closed, or replaced by another file, or its folder came or
-   went, since the last call. Does not wait. */
+   went, or a link on the way to it was replaced (the new way is not watched), since the last call.
+   Does not wait. */
 bool watch_changed(struct watch *watch);
 
 #endif

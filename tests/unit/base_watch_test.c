@@ -190,6 +190,22 @@ TEST_IN(a_file_in_the_place_of_a_folder_is_followed, folder_begin, folder_end)
     watch_destroy(watch);
 }
 
+TEST_IN(a_link_to_a_folder_that_is_replaced_is_a_change, folder_begin, folder_end)
+{
+    struct watch *watch = watch_create(wake);
+    assert_int_equal(mkdir(in_folder("one"), 0777), 0);
+    assert_int_equal(symlink("one", in_folder("link")), 0);
+    put_text("one/a.glsl", "1");
+    watch_add(watch, in_folder("link/a.glsl"), moment());
+    assert_false(watch_changed(watch));
+    assert_int_equal(symlink("other", in_folder("new")), 0);
+    assert_false(watch_changed(watch));
+    assert_int_equal(rename(in_folder("new"), in_folder("link")), 0); /* as `ln -sfn` does */
+    assert_true(watch_changed(watch));
+    assert_false(watch_changed(watch));
+    watch_destroy(watch);
+}
+
 TEST(nothing_is_fine)
 {
     watch_add(NULL, "a", watch_now_ns());
