@@ -232,7 +232,7 @@ static const struct {
     {"float f(float x, int n) {\n  case 1: return x;\n}\n", 2, "case"},
     {"float f(float x, int n) {\n  return;\n}\n", 2, "return"},
     {"float f(float x, int n) {\n  discard;\n  return x;\n}\n", 2, "discard"},
-    {"float f(float x, int n) {\n  x = x @ 1.0;\n  return x;\n}\n", 2, "bad"},
+    {"float f(float x, int n) {\n  x = x @ 1.0;\n  return x;\n}\n", 2, "'@' is not GLSL"},
     {"float f(float x, int n) {\n  return 1.0e;\n}\n", 2, ""},
     {"float f(float x, int n) {\n  return 99999999999;\n}\n", 2, "too big"},
     {"float f(float x, int n) {\n  return texture(s, vec2(x)).x;\n}\n", 2, "undeclared"},
