@@ -37,6 +37,8 @@ struct whit_refine {
    most BAILOUT_ALL * BAILOUT_SHADOW_SHARE, a thousandth, of their light. */
 static const double BAILOUT_ALL = 16.0;
 
+_Static_assert(WHIT_SAMPLES_MAX == 1 << ESTIMATE_DOUBLINGS_MAX, "doublings that are kept");
+
 whit_result whit_refine_create(whit_renderer *renderer, const whit_renderer_params *params,
                                whit_refine **out)
 {
@@ -190,7 +192,7 @@ whit_result whit_refine_begin(whit_refine *refine, uint32_t samples, const float
 static void add_part(whit_refine *refine, const struct part *part)
 {
     const struct image *const halves[2] = {&refine->mean.color, &part->color};
-    estimate_note_change(&refine->estimate, halves);
+    estimate_note_change(&refine->estimate, halves, refine->samples);
     add_half(&refine->mean.color, &part->color);
     add_half(&refine->mean.cuts, &part->cuts);
     for (uint32_t i = 0; i < refine->mean.aov_count; ++i)
@@ -244,8 +246,9 @@ whit_result whit_refine_step(whit_refine *refine)
         return result;
     refine->cut = is_any_cut(&refine->mean.cuts);
     if (is_told(refine))
-        refine->error = estimate_error(&refine->estimate, &refine->mean.cuts, refine->cut_radiance,
-                                       &refine->errors, &refine->error_of_cuts);
+        refine->error =
+            estimate_error(&refine->estimate, &refine->mean.color, &refine->mean.cuts,
+                           refine->cut_radiance, &refine->errors, &refine->error_of_cuts);
     return WHIT_OK;
 }
 

@@ -1,7 +1,8 @@
 /* Samples are points of a sequence that fills the pixel more and more evenly (picture/sequence.h),
    so each doubling of samples changes a pixel less than the doubling before: by a rate of 0.7 where
    samples are like noise, and of 0.5 and less where an edge or a gradient crosses the pixel. The
-   estimated error is larger where changes fall slowly. docs/accuracy.md, "The estimate of a refined
+   estimated error is larger where changes fall slowly, and where the pixels beside a pixel tell of
+   an edge that its own samples may have missed. docs/accuracy.md, "The estimate of a refined
    picture", says how often it holds, and what else was tried. */
 #include "image/estimate.h"
 
@@ -11,25 +12,31 @@
 #include "base/array.h"
 #include "base/same.h"
 
-/* The constants below were fitted to the scenes in scenes/ at 64x48 and 92x60, where the estimate
-   meets its goals in 43 and 45 of 54 cases. At 76x56, which had no part in that, it does in 41. */
+/* The constants below were fitted to the scenes in scenes/ at 64x48 and 92x60. */
 
 /* The rate of a pixel, the factor by which its change falls from doubling to doubling, is taken to
-   lie between these. */
-#define RATE_LOW       0.36
-#define RATE_HIGH      0.65
-/* Each doubling multiplies the weight of earlier changes by the rate and by this: they were
-   measured with fewer samples, and the signs of two changes are as likely to differ as not. */
-#define FADES          0.8
+   lie between these. Each doubling multiplies the weight of earlier changes by it. */
+#define RATE_LOW       0.37
+#define RATE_HIGH      0.7
 /* The error of a pixel over the product of the picture's rate and the root of the weighted sum of
    its squared changes. */
-#define ERROR_A_RATE   2.6
+#define ERROR_A_RATE   1.6
+/* The changes of a pixel may be small by chance: they count as at least this part of the median
+   over the 3x3 pixels around. An edge beside the pixel does not change that median much. */
+#define MEDIAN_PART    0.8
+/* A pixel that differs from its neighbour by this many times more than its samples differ among
+   themselves is beside an edge, and has not seen it. A sample that differs by d from all others
+   counts as d / 2. */
+#define EDGE_TIMES     5.0
+/* An edge that N samples missed cuts a corner that covers up to this many N-ths of the pixel. A
+   strip along a side that they missed covers up to one. */
+#define CORNER_SAMPLES 3.0
 /* The radiance of rays that were cut, in units of the mean of those that were not: some of them
    would have met highlights. */
 #define CUTS_CARRY     2.0
 /* The estimate of a pixel is meant to be no less than its error in 95 % of the pixels, which is
    more than their root mean square needs: this part of it was no less than the RMSE in all of those
-   cases, of all three sizes. */
+   cases, and at 76x56, which had no part in the fit. */
 #define RMS_PART       (1.0 / 1.5)
 /* Keeps the square of a change finite. */
 #define CHANGE_LARGEST 1e18f
@@ -47,56 +54,50 @@ void estimate_finish(struct estimate *estimate)
     estimate->pixels = NULL;
 }
 
-/* Not-a-number, which is the difference of two infinite pixels, counts as no change. */
-static float change_of(const float *a, const float *b)
+/* The difference in the worst channel. Not-a-number, which is the difference of two infinite
+   pixels, counts as none. */
+static float difference_of(const float *a, const float *b)
 {
-    float largest =
-        fmaxf(fmaxf(fabsf(a[0] - b[0]), fabsf(a[1] - b[1])), fmaxf(fabsf(a[2] - b[2]), 0.0f));
-    return 0.5f * fminf(largest, CHANGE_LARGEST);
+    return fmaxf(fmaxf(fabsf(a[0] - b[0]), fabsf(a[1] - b[1])), fmaxf(fabsf(a[2] - b[2]), 0.0f));
 }
 
-void estimate_note_change(struct estimate *estimate, const struct image *const halves[2])
+void estimate_note_change(struct estimate *estimate, const struct image *const halves[2],
+                          uint32_t samples)
 {
     size_t count = (size_t)estimate->width * estimate->height;
-    const float quick = (float)(FADES * RATE_LOW), slow = (float)(FADES * RATE_HIGH);
     double sum = 0.0;
-    ++estimate->doublings;
     for (size_t i = 0; i < count; ++i) {
-        float change = change_of(&halves[0]->pixels[halves[0]->channels * i],
-                                 &halves[1]->pixels[halves[1]->channels * i]);
-        struct estimate_pixel *pixel = &estimate->pixels[i];
-        if (estimate->doublings <= 2)
-            pixel->first += change;
-        pixel->before = pixel->last;
-        pixel->last = change;
-        pixel->quick = change * change + quick * quick * pixel->quick;
-        pixel->slow = change * change + slow * slow * pixel->slow;
+        float difference = difference_of(&halves[0]->pixels[halves[0]->channels * i],
+                                         &halves[1]->pixels[halves[1]->channels * i]);
+        float change = 0.5f * fminf(difference, CHANGE_LARGEST);
+        estimate->pixels[i].changes[estimate->doublings] = change;
         sum += (double)change;
     }
     estimate->last = sum / (double)count;
-    if (estimate->doublings == 1)
+    if (estimate->doublings++ == 0)
         estimate->first = estimate->last;
+    estimate->samples = 2 * samples;
 }
 
-/* Sums over the 3x3 pixels around (x, y), fewer at the border. */
+/* The 3x3 pixels around a pixel, row by row: the pixel itself is number 4. Beyond the border are
+   those at the border once more. */
 struct around {
-    double first, last_two, faded;
-    uint32_t count;
+    size_t at[9];
 };
 
-static struct around sum_around(const struct estimate *estimate, uint32_t x, uint32_t y)
+static uint32_t clamp_place(uint32_t place_and_one, uint32_t count)
 {
-    uint32_t x0 = x > 0 ? x - 1 : 0, y0 = y > 0 ? y - 1 : 0;
-    struct around sum = {0};
-    for (uint32_t j = y0; j <= y + 1 && j < estimate->height; ++j) {
-        for (uint32_t i = x0; i <= x + 1 && i < estimate->width; ++i, ++sum.count) {
-            const struct estimate_pixel *pixel = &estimate->pixels[(size_t)j * estimate->width + i];
-            sum.first += (double)pixel->first;
-            sum.last_two += (double)pixel->before + (double)pixel->last;
-            sum.faded += (double)pixel->faded;
-        }
-    }
-    return sum;
+    uint32_t place = place_and_one > 0 ? place_and_one - 1 : 0;
+    return place < count ? place : count - 1;
+}
+
+static struct around find_around(const struct estimate *estimate, uint32_t x, uint32_t y)
+{
+    struct around around;
+    for (uint32_t i = 0; i < 9; ++i)
+        around.at[i] = (size_t)clamp_place(y + i / 3, estimate->height) * estimate->width +
+                       clamp_place(x + i % 3, estimate->width);
+    return around;
 }
 
 /* By how much changes fall from doubling to doubling in the whole picture. The first change alone
@@ -108,17 +109,34 @@ static double picture_rate(const struct estimate *estimate)
     return same_pow(estimate->last / estimate->first, 1.0 / (estimate->doublings - 1));
 }
 
-/* The rate around a pixel, by its first two and last two changes: 0 for RATE_LOW, 1 for RATE_HIGH,
-   and between them by its logarithm. */
-static double rate_around(const struct estimate *estimate, uint32_t x, uint32_t y)
+/* The rate around a pixel, by its first two and last two changes. */
+static double rate_around(const struct estimate *estimate, const struct around *around)
 {
-    if (estimate->doublings <= 2)
-        return 0.5;
-    struct around sum = sum_around(estimate, x, y);
-    double rate_log =
-        same_log((sum.last_two + 1e-9) / (sum.first + 1e-9)) / (estimate->doublings - 2);
-    double share = (rate_log - same_log(RATE_LOW)) / (same_log(RATE_HIGH) - same_log(RATE_LOW));
-    return fmin(fmax(share, 0.0), 1.0);
+    uint32_t count = estimate->doublings;
+    double first = 1e-5, last = 1e-5;
+    if (count <= 2)
+        return sqrt(RATE_LOW * RATE_HIGH);
+    for (int i = 0; i < 9; ++i) {
+        const float *changes = estimate->pixels[around->at[i]].changes;
+        first += (double)changes[0] + (double)changes[1];
+        last += (double)changes[count - 2] + (double)changes[count - 1];
+    }
+    return fmin(fmax(same_pow(last / first, 1.0 / (count - 2)), RATE_LOW), RATE_HIGH);
+}
+
+/* Sets `faded` and `seen` of a pixel. An earlier change was measured with fewer samples, and its
+   sign is as likely to be the other. */
+static void sum_changes(const struct estimate *estimate, double rate, struct estimate_pixel *pixel)
+{
+    double faded = 0.0, seen = 0.0;
+    for (uint32_t i = 0; i < estimate->doublings; ++i) {
+        double square = (double)pixel->changes[i] * (double)pixel->changes[i];
+        double half = estimate->samples >> (estimate->doublings - i); /* samples of a half */
+        faded = faded * rate * rate + square;
+        seen += square * half * half;
+    }
+    pixel->faded = (float)sqrt(faded);
+    pixel->seen = (float)(EDGE_TIMES * sqrt(seen));
 }
 
 static void fade(struct estimate *estimate)
@@ -126,27 +144,62 @@ static void fade(struct estimate *estimate)
     struct estimate_pixel *pixel = estimate->pixels;
     for (uint32_t y = 0; y < estimate->height; ++y) {
         for (uint32_t x = 0; x < estimate->width; ++x, ++pixel) {
-            float share = (float)rate_around(estimate, x, y);
-            pixel->faded = sqrtf(pixel->quick + share * (pixel->slow - pixel->quick));
+            const struct around around = find_around(estimate, x, y);
+            sum_changes(estimate, rate_around(estimate, &around), pixel);
         }
     }
 }
 
-/* The changes of a pixel alone may be small by chance, and the mean over its neighbours includes an
-   edge beside it. So the estimate is own^(3/4) times mean^(1/4). */
-double estimate_error(struct estimate *estimate, const struct image *cuts, double cut_radiance,
-                      struct image *out, double *of_cuts)
+static float median_around(const struct estimate *estimate, const struct around *around)
+{
+    float sorted[9];
+    for (int i = 0; i < 9; ++i) {
+        float value = estimate->pixels[around->at[i]].faded;
+        int place = i;
+        for (; place > 0 && sorted[place - 1] > value; --place)
+            sorted[place] = sorted[place - 1];
+        sorted[place] = value;
+    }
+    return sorted[4];
+}
+
+/* The error by edges that the samples of a pixel missed. Such an edge cuts a corner if the pixels
+   at both of its sides differ from this one. It leaves a strip along a side if the pixel at that
+   side differs, and the samples there did not see the edge either. */
+static double missed_at(const struct estimate *estimate, const struct image *picture,
+                        const struct around *around)
+{
+    static const int sides[4] = {3, 5, 1, 7}; /* left, right, above, below */
+    const struct estimate_pixel *pixels = estimate->pixels;
+    double steps[4], strip = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        size_t own = around->at[4], side = around->at[sides[i]];
+        float difference = difference_of(&picture->pixels[picture->channels * own],
+                                         &picture->pixels[picture->channels * side]);
+        steps[i] =
+            difference < CHANGE_LARGEST ? (double)difference - (double)pixels[own].seen : 0.0;
+        strip = fmax(strip, steps[i] - (double)pixels[side].seen);
+    }
+    double corner = fmin(fmax(steps[0], steps[1]), fmax(steps[2], steps[3]));
+    return (CORNER_SAMPLES * fmax(corner, 0.0) + strip) / estimate->samples;
+}
+
+double estimate_error(struct estimate *estimate, const struct image *picture,
+                      const struct image *cuts, double cut_radiance, struct image *out,
+                      double *of_cuts)
 {
     double rate = picture_rate(estimate), squares = 0.0, cut_squares = 0.0;
     size_t i = 0;
     fade(estimate);
     for (uint32_t y = 0; y < estimate->height; ++y) {
         for (uint32_t x = 0; x < estimate->width; ++x, ++i) {
-            struct around sum = sum_around(estimate, x, y);
-            double own = (double)estimate->pixels[i].faded, around = sum.faded / sum.count;
+            const struct around around = find_around(estimate, x, y);
+            double changes = fmax((double)estimate->pixels[i].faded,
+                                  MEDIAN_PART * (double)median_around(estimate, &around));
             double weight = (double)cuts->pixels[2 * i] + (double)cuts->pixels[2 * i + 1];
             double cut = CUTS_CARRY * weight * cut_radiance;
-            double error = ERROR_A_RATE * rate * sqrt(own * sqrt(own * around)) + cut;
+            double error =
+                ERROR_A_RATE * rate * changes + missed_at(estimate, picture, &around) + cut;
             out->pixels[i] = (float)error;
             squares += error * error;
             cut_squares += cut * cut;

@@ -44,8 +44,8 @@ check "less error takes more samples ($coarse, $samples)" test "$samples" -gt "$
 same_as_samples
 
 # After two samples nothing is known of how quickly changes fall.
-expect 0 "64 samples" render "$SCENES/room.json" --size 32x24 --aa 64 -o truth.exr
-expect 0 "two samples" render "$SCENES/room.json" --size 32x24 --refine 1 -o r.exr --stats json
+expect 0 "64 samples" render "$SCENES/spin.json" --size 32x24 --aa 64 -o truth.exr
+expect 0 "two samples" render "$SCENES/spin.json" --size 32x24 --refine 1 -o r.exr --stats json
 check "two" test "$(jq .refine.samples stdout)" -eq 2
 check "are not told to be better than they are" "$WHIT" compare truth.exr r.exr --metric rmse -q \
     --tolerance "$(jq .refine.rmse_estimate stdout)"

@@ -21,11 +21,12 @@ static void assert_near(double value, double wanted)
     assert_within(value, wanted, 1e-6);
 }
 
-/* What estimate.c computes, once more by hand: rates, fading and factor. */
-static const double LOW = 0.36, HIGH = 0.65, FADES = 0.8, A_RATE = 2.6;
+/* What estimate.c computes, once more by hand: rates, factors, and edges that were not seen. */
+static const double LOW = 0.37, HIGH = 0.7, A_RATE = 1.6, MEDIAN = 0.8, EDGE = 5.0, CORNER = 3.0;
 
-/* Notes a doubling whose halves differ by twice `changes` in one channel of each pixel. */
-static void note(struct estimate *estimate, const float changes[COUNT])
+/* Notes a doubling of `samples` whose halves differ by twice `changes` in one channel of each
+   pixel. */
+static void note(struct estimate *estimate, const float changes[COUNT], uint32_t samples)
 {
     own_image a = image_of(4, 0.5f), b = image_of(4, 0.5f);
     const struct image *const halves[2] = {&a, &b};
@@ -33,31 +34,72 @@ static void note(struct estimate *estimate, const float changes[COUNT])
         b.pixels[4 * i + i % 3] += (i % 2 ? 2.0f : -2.0f) * changes[i];
         b.pixels[4 * i + 3] = 9.0f; /* no colour */
     }
-    estimate_note_change(estimate, halves);
+    estimate_note_change(estimate, halves, samples);
 }
 
-/* Notes the changes, and gives the estimate of each pixel of a picture without cut rays. */
-static void note_and_estimate(struct estimate *estimate, const float changes[COUNT],
-                              struct image *out)
+/* The estimate of each pixel of an even picture without cut rays. */
+static void estimate_even(struct estimate *estimate, struct image *out)
 {
-    own_image cuts = image_of(2, 0.0f);
+    own_image picture = image_of(4, 0.5f), cuts = image_of(2, 0.0f);
     double of_cuts;
-    note(estimate, changes);
-    estimate_error(estimate, &cuts, 2.0, out, &of_cuts);
+    estimate_error(estimate, &picture, &cuts, 2.0, out, &of_cuts);
     assert_near(of_cuts, 0.0);
 }
 
-TEST(the_worst_channel_counts_and_so_do_pixels_around)
+TEST(the_worst_channel_counts_and_so_does_the_median_of_pixels_around)
 {
-    float changes[COUNT] = {[0] = 0.4f, [WIDTH + 1] = 0.9f}; /* (0, 0), (1, 1) */
+    float changes[COUNT];
     own_image out = image_of(1, 0.0f);
     struct estimate estimate;
     assert_int_equal(estimate_init(&estimate, WIDTH, HEIGHT), WHIT_OK);
-    note_and_estimate(&estimate, changes, &out);
-    double around = (0.4 + 0.9) / 9.0, corner = (0.4 + 0.9) / 4.0;
-    assert_near((double)out.pixels[WIDTH + 1], A_RATE * pow(0.9, 0.75) * pow(around, 0.25));
-    assert_near((double)out.pixels[0], A_RATE * pow(0.4, 0.75) * pow(corner, 0.25));
-    assert_near((double)out.pixels[1], 0.0); /* this pixel itself has not changed */
+    for (size_t i = 0; i < COUNT; ++i)
+        changes[i] = i < WIDTH ? 0.0f : 0.01f * (float)i; /* an edge below the first row */
+    note(&estimate, changes, 1);
+    estimate_even(&estimate, &out);
+    /* At (2, 0): six pixels without a change, as the row is its own neighbour beyond the border. */
+    assert_near((double)out.pixels[2], 0.0);
+    /* At (2, 1): three without a change, 0.06 to 0.08 and 0.11 to 0.13; at (0, 2): 0.05, 0.05,
+       0.06, 0.1, 0.1, 0.11, 0.15, 0.15, 0.16. */
+    assert_near((double)out.pixels[WIDTH + 2], A_RATE * 0.07);
+    assert_near((double)out.pixels[2 * WIDTH], A_RATE * 0.1);
+    /* Its own change is less than a part of the median: 0.01 in place of 0.12. */
+    changes[2 * WIDTH + 2] = 0.01f;
+    estimate.doublings = 0;
+    note(&estimate, changes, 1);
+    estimate_even(&estimate, &out);
+    assert_near((double)out.pixels[2 * WIDTH + 2], A_RATE * MEDIAN * 0.11);
+    estimate_finish(&estimate);
+}
+
+/* Edges in the picture after one doubling to `samples`, where each sample saw the same: estimates
+   of pixels that a step of 0.25 separates. */
+TEST(an_edge_beside_a_pixel_may_have_been_missed)
+{
+    float changes[COUNT] = {0};
+    own_image picture = image_of(4, 0.5f), cuts = image_of(2, 0.0f), out = image_of(1, 0.0f);
+    struct estimate estimate;
+    double of_cuts;
+    assert_int_equal(estimate_init(&estimate, WIDTH, HEIGHT), WHIT_OK);
+    picture.pixels[4 * 3 + 1] = 0.75f;           /* (3, 0) */
+    picture.pixels[4 * (WIDTH + 4) + 1] = 0.75f; /* (4, 1): (3, 1) is in the corner of the edge */
+    note(&estimate, changes, 8);
+    estimate_error(&estimate, &picture, &cuts, 2.0, &out, &of_cuts);
+    assert_near((double)out.pixels[2], 0.25 / 16.0);                          /* a strip */
+    assert_near((double)out.pixels[WIDTH + 3], 0.25 * (CORNER + 1.0) / 16.0); /* and a corner */
+    assert_near((double)out.pixels[WIDTH + 2], 0.0);                          /* at its corner */
+    /* A neighbour that has seen the edge leaves no strip, and a pixel that has seen it no more. */
+    changes[3] = changes[WIDTH + 4] = (float)(0.2 / (8.0 * EDGE));
+    estimate.doublings = 0;
+    note(&estimate, changes, 8);
+    estimate_error(&estimate, &picture, &cuts, 2.0, &out, &of_cuts);
+    assert_within((double)out.pixels[2], (0.25 - 0.2) / 16.0, 1e-4);
+    assert_within((double)out.pixels[WIDTH + 3], (0.25 * CORNER + 0.05) / 16.0, 1e-4);
+    changes[WIDTH + 3] = (float)(0.15 / (8.0 * EDGE));
+    estimate.doublings = 0;
+    note(&estimate, changes, 8);
+    estimate_error(&estimate, &picture, &cuts, 2.0, &out, &of_cuts);
+    assert_within((double)out.pixels[WIDTH + 3], A_RATE * 0.15 / (8.0 * EDGE) + 0.1 * CORNER / 16.0,
+                  1e-4);
     estimate_finish(&estimate);
 }
 
@@ -73,37 +115,36 @@ static double factor_of(double rate, int doublings)
         change *= n > 0 ? rate : 1.0;
         for (size_t i = 0; i < COUNT; ++i)
             changes[i] = (float)change;
-        note_and_estimate(&estimate, changes, &out);
+        note(&estimate, changes, 1u << n);
     }
+    estimate_even(&estimate, &out);
     double factor = (double)out.pixels[7] / change;
     estimate_finish(&estimate);
     return factor;
 }
 
-/* 1 + (f / rate)^2 + (f / rate)^4 ...: the squares of faded changes, in units of the last one. */
+/* The root of 1 + (f / rate)^2 + (f / rate)^4 ...: faded changes, in units of the last one. */
 static double faded(double fades, double rate, int doublings)
 {
     double sum = 0.0;
     for (int n = 0; n < doublings; ++n)
         sum += pow(fades / rate, 2.0 * n);
-    return sum;
+    return sqrt(sum);
 }
 
 TEST(earlier_changes_fade_by_the_rate_of_their_pixel)
 {
     static const double rates[] = {0.1, LOW, 0.45, 0.6, HIGH, 0.8};
+    const double middle = sqrt(LOW * HIGH);
     for (size_t i = 0; i < sizeof rates / sizeof *rates; ++i) {
-        double quick = faded(FADES * LOW, rates[i], 5), slow = faded(FADES * HIGH, rates[i], 5);
-        double share = (log(rates[i]) - log(LOW)) / (log(HIGH) - log(LOW));
-        share = fmin(fmax(share, 0.0), 1.0);
-        assert_within(factor_of(rates[i], 5),
-                      A_RATE * rates[i] * sqrt(quick + share * (slow - quick)), 1e-4);
+        double fades = fmin(fmax(rates[i], LOW), HIGH);
+        assert_within(factor_of(rates[i], 5), A_RATE * rates[i] * faded(fades, rates[i], 5), 1e-3);
     }
-    double before = 0.5 * (faded(FADES * LOW, 0.5, 2) + faded(FADES * HIGH, 0.5, 2));
-    assert_within(factor_of(0.5, 2), A_RATE * 0.5 * sqrt(before), 1e-4);
-    assert_within(factor_of(1.5, 2),
-                  A_RATE * sqrt(0.5 * (faded(FADES * LOW, 1.5, 2) + faded(FADES * HIGH, 1.5, 2))),
-                  1e-4); /* changes that grow: a rate of 1 */
+    assert_within(factor_of(0.5, 2), A_RATE * 0.5 * faded(middle, 0.5, 2), 1e-4);
+    /* Changes that grow: a rate of 1. */
+    assert_within(factor_of(1.5, 2), A_RATE * faded(middle, 1.5, 2), 1e-4);
+    assert_within(factor_of(0.5, ESTIMATE_DOUBLINGS_MAX),
+                  A_RATE * 0.5 * faded(0.5, 0.5, ESTIMATE_DOUBLINGS_MAX), 2e-2);
 }
 
 TEST(rates_are_those_of_the_pixels_around)
@@ -113,29 +154,27 @@ TEST(rates_are_those_of_the_pixels_around)
     struct estimate estimate;
     assert_int_equal(estimate_init(&estimate, WIDTH, HEIGHT), WHIT_OK);
     for (int n = 0; n < 5; ++n) {
-        changes[0] = (float)pow(0.3, n);
+        changes[0] = (float)pow(0.4, n);
         changes[4] = (float)pow(0.7, n); /* the other corner of the row */
-        note_and_estimate(&estimate, changes, &out);
+        note(&estimate, changes, 1u << n);
     }
-    double rate = pow((pow(0.3, 4) + pow(0.7, 4)) / 2.0, 0.25);
-    double quick = sqrt(faded(FADES * LOW, 0.3, 5)), slow = sqrt(faded(FADES * HIGH, 0.7, 5));
-    assert_within((double)out.pixels[0], A_RATE * rate * pow(0.3, 4) * quick * pow(4.0, -0.25),
-                  1e-4);
-    assert_within((double)out.pixels[4], A_RATE * rate * pow(0.7, 4) * slow * pow(4.0, -0.25),
-                  1e-4);
+    estimate_even(&estimate, &out);
+    double rate = pow((pow(0.4, 4) + pow(0.7, 4)) / 2.0, 0.25);
+    assert_within((double)out.pixels[0], A_RATE * rate * pow(0.4, 4) * faded(0.4, 0.4, 5), 1e-4);
+    assert_within((double)out.pixels[4], A_RATE * rate * pow(0.7, 4) * faded(0.7, 0.7, 5), 1e-4);
     estimate_finish(&estimate);
 }
 
 TEST(cut_rays_carry_twice_the_mean)
 {
     float changes[COUNT] = {[0] = 0.4f};
-    own_image cuts = image_of(2, 0.0f), out = image_of(1, 0.0f);
+    own_image picture = image_of(4, 0.5f), cuts = image_of(2, 0.0f), out = image_of(1, 0.0f);
     struct estimate estimate;
     assert_int_equal(estimate_init(&estimate, WIDTH, HEIGHT), WHIT_OK);
-    note(&estimate, changes);
+    note(&estimate, changes, 1);
     cuts.pixels[2 * 19] = 0.25f; /* (4, 3) */
     cuts.pixels[2 * 19 + 1] = 0.5f;
-    double of_cuts = 0.0, whole = estimate_error(&estimate, &cuts, 2.0, &out, &of_cuts);
+    double of_cuts = 0.0, whole = estimate_error(&estimate, &picture, &cuts, 2.0, &out, &of_cuts);
     double corner = (double)out.pixels[0];
     assert_near((double)out.pixels[19], 3.0);
     assert_near(of_cuts, sqrt(3.0 * 3.0 / COUNT) / 1.5);
@@ -154,8 +193,8 @@ TEST(infinite_pixels_leave_the_others_as_they_are)
     double of_cuts;
     assert_int_equal(estimate_init(&estimate, WIDTH, HEIGHT), WHIT_OK);
     a.pixels[0] = a.pixels[4 * 19] = b.pixels[4 * 19] = INFINITY;
-    estimate_note_change(&estimate, halves);
-    double whole = estimate_error(&estimate, &cuts, 0.0, &out, &of_cuts);
+    estimate_note_change(&estimate, halves, 1);
+    double whole = estimate_error(&estimate, &a, &cuts, 0.0, &out, &of_cuts);
     assert_true(isfinite(whole) && whole > 1e9 && out.pixels[0] > 1e9f);
     for (size_t i = 1; i < COUNT; ++i)
         assert_true(out.pixels[i] == 0.0f);
