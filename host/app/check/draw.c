@@ -108,7 +108,7 @@ static whit_result take_scene(struct studio *studio, struct job *job, struct stu
         finish_scene(&scene);
         return cli_no_memory();
     }
-    *out = studio->scenes + studio->scene_count - 1;
+    *out = scene.scene ? &studio->scenes[studio->scene_count - 1] : NULL;
     return result;
 }
 
