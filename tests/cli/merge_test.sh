@@ -72,7 +72,8 @@ large() {
     "$PARTS" "$1" "$2" "$3" || echo "no parts"
     expect 0 "$1 x $1 of $2 tiles" merge p*.$3 -o "large.$3" --stats json
     peak=$(jq '.memory.host_peak_bytes / 1048576 | ceil' "$OUT/stdout")
-    check "$1 x $1 of $2 tiles, $3: within $4 MiB (got $peak)" test "$peak" -le "$4"
+    [ -n "${ASAN_OPTIONS:-}" ] || # its allocator keeps what was freed
+        check "$1 x $1 of $2 tiles, $3: within $4 MiB (got $peak)" test "$peak" -le "$4"
     rm -f p*.*
 }
 
