@@ -64,13 +64,15 @@ whit_result pixels_create(struct target *target, uint32_t height, uint32_t tile_
     uint32_t tile = tile_size ? tile_size : usual_tile(device);
     uint64_t slots = (uint64_t)tile * tile,
              slots_max = UINT64_C(1) << (32 - pixels_slot_shift(renderer->params.depth));
-    slots_max = slots_max < limit / SLOT_LARGEST_BYTES ? slots_max : limit / SLOT_LARGEST_BYTES;
+    uint32_t aovs = hooks_aov_count(target);
+    /* Slots leave at least half of the buffer of aovs to pixels. */
+    uint64_t largest = aovs > SLOT_LARGEST_BYTES / 32 ? 32 * aovs : SLOT_LARGEST_BYTES;
+    slots_max = slots_max < limit / largest ? slots_max : limit / largest;
     slots = slots > slots_max ? slots_max : slots;
     p->levels = pixels_levels(&renderer->params);
     /* The pixels share their buffer with the partial sums of samples, which lie behind them. */
     bool posts = shader_has(renderer->params.shader, WHIT_HOOK_POST);
     uint64_t max_pixels = (limit / 16 - slots * p->levels) / (posts ? 2 : 1);
-    uint32_t aovs = hooks_aov_count(target);
     if (aovs && limit / 16 / aovs - slots < max_pixels)
         max_pixels = limit / 16 / aovs - slots;
     uint64_t rows = max_pixels / width / 8 * 8;

@@ -96,6 +96,8 @@ check "it is in both files" test "$(grep -ac facing.R both.exr) $(grep -ac facin
 seq 64 | sed 's|.*|//@ aov a&\nvec4 a&(Surface s) { return vec4(&.0); }|' >many.glsl
 expect 0 "as many aovs as may be" render "$CUBE" --size 16x12 --quiet --shader many.glsl -o many.exr
 check "are all in the file" test "$(grep -aoE 'a[0-9]+[.]R' many.exr | sort -u | wc -l)" -eq 64
+expect 0 "in large tiles" render "$CUBE" --size 16x12 --quiet --shader many.glsl --tile-size 1024 -o large.exr
+check "as in small ones" cmp many.exr large.exr
 expect 0 "the last one" render "$CUBE" --size 16x12 --quiet --shader many.glsl --aov a64 -o last.exr
 expect 2 "--aov without --shader" render "$CUBE" --aov facing -o aov.exr
 check "its fuel" test "$(jq .fuel all.json)" = 20000
