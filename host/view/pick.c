@@ -66,11 +66,12 @@ static void bounds_of(const whit_scene *scene, uint32_t instance, double lo[3], 
    an object of an animated scene. */
 static bool is_small(const struct view *view, const double lo[3], const double hi[3])
 {
-    double all_lo[3], all_hi[3], all = 0.0, own = 0.0;
-    if (!view_bounds(view, all_lo, all_hi) || view->scene->info.time_end_s > 0.0)
+    double all = 0.0, own = 0.0;
+    if (!view->scene || view->scene->info.time_end_s > 0.0)
         return false;
     for (int i = 0; i < 3; ++i) {
-        all += (all_hi[i] - all_lo[i]) * (all_hi[i] - all_lo[i]);
+        double side = view->scene->info.objects_hi[i] - view->scene->info.objects_lo[i];
+        all += side * side;
         own += (hi[i] - lo[i]) * (hi[i] - lo[i]);
     }
     return own > 0.0 && own < 0.8 * all;

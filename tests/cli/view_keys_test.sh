@@ -75,6 +75,15 @@ END
 start:
 near: move 48 32, press F, until probe.number = 1, still | words has --camera 0,0,2.5,0,0,0.5,0,1,0,40
 END
+    # The only object under a sky, which whit's own camera shows alone, is framed all the same.
+    cat >"$OUT/sky.json" <<'JSON'
+{ "ambient": 0.2, "objects": [ { "shape": "icosphere", "level": 3, "radius": 60 },
+    { "shape": "box", "translation": [3, 1, -2] } ] }
+JSON
+    play "under a sky" "$OUT/sky.json" $SMALL <<END
+start:
+frame: move 40 28, press F, until probe.number = 1, still | words has ,3,1,-2,
+END
     # Without trees the picture is the same, and with trees again.
     play "no trees" "$CUBE" $SMALL <<END
 start:
