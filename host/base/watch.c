@@ -194,7 +194,7 @@ static bool is_link(const char *path)
 static void add_links(struct watch *watch, const char *path, int64_t since_ns)
 {
     char *part = string_copy(path);
-    for (char *slash = part; slash && (slash = strchr(slash + 1, '/'));) {
+    for (char *slash = part; slash && slash[0] && (slash = strchr(slash + 1, '/'));) {
         *slash = '\0';
         if (is_link(part))
             add_one(watch, part, since_ns);

@@ -214,6 +214,7 @@ TEST(nothing_is_fine)
     watch_destroy(NULL);
     struct watch *watch = watch_create(wake);
     watch_add(watch, in_folder("no/such/folder/a.json"), watch_now_ns());
+    watch_add(watch, "", watch_now_ns());
     assert_false(watch_changed(watch));
     watch_destroy(watch);
 }
