@@ -115,14 +115,6 @@ bool is_near(vec3 dir, vec3 first)
     return a.z * b.z > 0.0 && apart.x < 0.5 * BEAM_WIDTH && apart.y < 0.5 * BEAM_WIDTH;
 }
 
-// At NUMERICS_EXACT, whether boxes may be tested by reciprocals alone, in an instance too, by whose
-// entries (at most 1e30) directions become shorter.
-bool is_long(vec3 dir)
-{
-    vec3 size = abs(dir);
-    return SPEC_NUMERICS != NUMERICS_EXACT || max(size.x, max(size.y, size.z)) > 1.0 / 1048576.0;
-}
-
 vec3 of_first(vec3 value)
 {
     return vec3(subgroupShuffle(value.x, 0u), subgroupShuffle(value.y, 0u), subgroupShuffle(value.z, 0u));
@@ -175,7 +167,7 @@ void trace_beam()
             t_min = subgroupShuffle(ray.t_min, 0u);
         }
         bool fits = floatBitsToUint(ray.origin) == floatBitsToUint(eye) && ray.t_min == t_min &&
-                    ray.t_min >= 0.0 && is_near(ray.dir, first) && is_long(ray.dir);
+                    ray.t_min >= 0.0 && is_near(ray.dir, first);
         some = some || alive[r];
         apart = apart || (alive[r] && !fits);
         packet_origin[r] = ray.origin;
