@@ -208,6 +208,8 @@ static whit_renderer_params task_params(const struct engine_task *task)
     }
     if (task->quality == ENGINE_QUICK && task->divisor > 1 && !counts)
         params.bailout = fmax(params.bailout, MOVING_BAILOUT);
+    /* A kernel that is still to be made would hold up a moving picture. */
+    params.few_pixels = task->moving;
     params.step_spacing = task->step_spacing;
     params.step_aov =
         shader_ref_find_aov(session->shader, session->settings.aov) + 1; /* 0: no such aov */
