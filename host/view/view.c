@@ -497,13 +497,22 @@ static whit_result open_all(struct view *view)
     return result;
 }
 
+/* Whether a thread is making a session, which a driver may not let it stop for minutes. */
+static bool is_making_session(const struct view *view)
+{
+    struct engine_status status;
+    engine_get_status(view->engine, &status);
+    return status.stage_ms > 0.0;
+}
+
 /* Gives `result`, or where it is fine an error of the record. */
 static whit_result close_all(struct view *view, whit_result result, uint32_t *validation)
 {
     scenes_end(view);
     shaders_end(view);
     whit_result recorded = replay_close(view);
-    if (result == WHIT_OK && recorded == WHIT_OK && view->params->end)
+    bool fine = result == WHIT_OK && recorded == WHIT_OK;
+    if (fine && view->params->end && is_making_session(view))
         view->params->end();
     prices_stop(view->prices);
     prices_stop(view->panels.measured);

@@ -31,8 +31,8 @@ struct view_params {
     const char *hint;   /* message to begin with, or NULL */
     bool remember;      /* remember cameras from one run to the next */
     const volatile bool *cancel;
-    /* Called when the window was closed without an error and the input is recorded; NULL: nothing
-       is called. */
+    /* Called when the window was closed without an error and the input is recorded, while the
+       driver may be compiling; NULL: nothing is called. */
     void (*end)(void);
     /* Tells of a scene when its file is first shown; NULL: nothing is told. */
     void (*tell)(const whit_scene *scene);
