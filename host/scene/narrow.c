@@ -210,7 +210,8 @@ static struct part find_box(const struct narrowing *n, struct part core, double 
     return part;
 }
 
-/* What is neither floor nor sky and not in the part. facing: area whose front faces the part. */
+/* Sums over the triangles outside of the part, floor and sky aside: their box, their area, and the
+   area of those whose front faces the part. */
 struct rest {
     struct part box;
     double area, facing;

@@ -83,7 +83,8 @@ static void write_value(const whit_slider *slider, char *text, size_t bytes)
     }
 }
 
-/* What --set takes besides the default: " (1 to 8)", " (plain, warm)", "". */
+/* Writes the values that --set takes for the slider: " (1 to 8)" or " (plain, warm)"; nothing for
+   colours and toggles. */
 static void write_range(const whit_slider *slider, char *text, size_t bytes)
 {
     if (slider->kind == WHIT_SLIDER_NUMBER)
