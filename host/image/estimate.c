@@ -8,9 +8,11 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
 #include "base/same.h"
+#include "base/threads.h"
 
 /* The constants below were fitted to the scenes in scenes/ at 64x48 and 92x60. */
 
@@ -41,17 +43,32 @@
 /* Keeps the square of a change finite. */
 #define CHANGE_LARGEST 1e18f
 
+/* Rows that a thread works on at once. Sums are made by bands, so that they do not depend on the
+   number of threads. */
+enum { BAND_ROWS = 16 };
+
+static uint32_t count_bands(const struct estimate *estimate)
+{
+    return (estimate->height + BAND_ROWS - 1) / BAND_ROWS;
+}
+
 whit_result estimate_init(struct estimate *estimate, uint32_t width, uint32_t height)
 {
     *estimate = (struct estimate){.width = width, .height = height};
     estimate->pixels = array_alloc_zeroed((size_t)width * height, sizeof *estimate->pixels);
-    return estimate->pixels ? WHIT_OK : WHIT_ERROR_MEMORY;
+    estimate->squares = array_alloc(count_bands(estimate), sizeof *estimate->squares);
+    if (estimate->pixels && estimate->squares)
+        return WHIT_OK;
+    estimate_finish(estimate);
+    return WHIT_ERROR_MEMORY;
 }
 
 void estimate_finish(struct estimate *estimate)
 {
     free(estimate->pixels);
+    free(estimate->squares);
     estimate->pixels = NULL;
+    estimate->squares = NULL;
 }
 
 /* The difference in the worst channel. Not-a-number, which is the difference of two infinite
@@ -139,13 +156,28 @@ static void sum_changes(const struct estimate *estimate, double rate, struct est
     pixel->seen = (float)(EDGE_TIMES * sqrt(seen));
 }
 
-static void fade(struct estimate *estimate)
+/* An estimate in the making; all that its bands read. */
+struct estimating {
+    struct estimate *estimate;
+    const struct image *picture, *cuts;
+    double rate, cut_radiance;
+    struct image *out;
+};
+
+static uint32_t end_of_band(const struct estimate *estimate, uint32_t band)
 {
-    struct estimate_pixel *pixel = estimate->pixels;
-    for (uint32_t y = 0; y < estimate->height; ++y) {
-        for (uint32_t x = 0; x < estimate->width; ++x, ++pixel) {
+    uint32_t left = estimate->height - band * BAND_ROWS;
+    return band * BAND_ROWS + (left < BAND_ROWS ? left : BAND_ROWS);
+}
+
+static void fade_band(void *context, uint32_t band)
+{
+    struct estimate *estimate = ((struct estimating *)context)->estimate;
+    for (uint32_t y = band * BAND_ROWS; y < end_of_band(estimate, band); ++y) {
+        struct estimate_pixel *row = &estimate->pixels[(size_t)y * estimate->width];
+        for (uint32_t x = 0; x < estimate->width; ++x) {
             const struct around around = find_around(estimate, x, y);
-            sum_changes(estimate, rate_around(estimate, &around), pixel);
+            sum_changes(estimate, rate_around(estimate, &around), &row[x]);
         }
     }
 }
@@ -184,29 +216,53 @@ static double missed_at(const struct estimate *estimate, const struct image *pic
     return (CORNER_SAMPLES * fmax(corner, 0.0) + strip) / estimate->samples;
 }
 
+static void estimate_pixel(const struct estimating *e, uint32_t x, uint32_t y, double squares[2])
+{
+    const struct estimate *estimate = e->estimate;
+    const struct around around = find_around(estimate, x, y);
+    size_t i = around.at[4];
+    double changes = fmax((double)estimate->pixels[i].faded,
+                          MEDIAN_PART * (double)median_around(estimate, &around));
+    double weight = (double)e->cuts->pixels[2 * i] + (double)e->cuts->pixels[2 * i + 1];
+    double cut = CUTS_CARRY * weight * e->cut_radiance;
+    double error =
+        ERROR_A_RATE * e->rate * changes + missed_at(estimate, e->picture, &around) + cut;
+    e->out->pixels[i] = (float)error;
+    squares[0] += error * error;
+    squares[1] += cut * cut;
+}
+
+static void estimate_band(void *context, uint32_t band)
+{
+    const struct estimating *e = context;
+    double squares[2] = {0.0, 0.0};
+    for (uint32_t y = band * BAND_ROWS; y < end_of_band(e->estimate, band); ++y) {
+        for (uint32_t x = 0; x < e->estimate->width; ++x)
+            estimate_pixel(e, x, y, squares);
+    }
+    memcpy(e->estimate->squares[band], squares, sizeof squares);
+}
+
 double estimate_error(struct estimate *estimate, const struct image *picture,
                       const struct image *cuts, double cut_radiance, struct image *out,
                       double *of_cuts)
 {
-    double rate = picture_rate(estimate), squares = 0.0, cut_squares = 0.0;
-    size_t i = 0;
-    fade(estimate);
-    for (uint32_t y = 0; y < estimate->height; ++y) {
-        for (uint32_t x = 0; x < estimate->width; ++x, ++i) {
-            const struct around around = find_around(estimate, x, y);
-            double changes = fmax((double)estimate->pixels[i].faded,
-                                  MEDIAN_PART * (double)median_around(estimate, &around));
-            double weight = (double)cuts->pixels[2 * i] + (double)cuts->pixels[2 * i + 1];
-            double cut = CUTS_CARRY * weight * cut_radiance;
-            double error =
-                ERROR_A_RATE * rate * changes + missed_at(estimate, picture, &around) + cut;
-            out->pixels[i] = (float)error;
-            squares += error * error;
-            cut_squares += cut * cut;
-        }
+    uint32_t bands = count_bands(estimate);
+    double count = (double)estimate->width * estimate->height, squares = 0.0, cut_squares = 0.0;
+    struct estimating estimating = {.estimate = estimate,
+                                    .picture = picture,
+                                    .cuts = cuts,
+                                    .rate = picture_rate(estimate),
+                                    .cut_radiance = cut_radiance,
+                                    .out = out};
+    threads_for(0, bands, fade_band, &estimating);
+    threads_for(0, bands, estimate_band, &estimating);
+    for (uint32_t i = 0; i < bands; ++i) {
+        squares += estimate->squares[i][0];
+        cut_squares += estimate->squares[i][1];
     }
-    *of_cuts = RMS_PART * sqrt(cut_squares / (double)i);
-    return RMS_PART * sqrt(squares / (double)i);
+    *of_cuts = RMS_PART * sqrt(cut_squares / count);
+    return RMS_PART * sqrt(squares / count);
 }
 
 double estimate_cut_radiance(const struct image *whole, const struct image *own,

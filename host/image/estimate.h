@@ -19,7 +19,8 @@ struct estimate_pixel {
 struct estimate {
     uint32_t width, height, doublings, samples;
     struct estimate_pixel *pixels; /* row 0 is the top */
-    double first, last;            /* means over all pixels of the first and of the last change */
+    double (*squares)[2]; /* by band of rows: sums of the squared errors, and of those by cuts */
+    double first, last;   /* means over all pixels of the first and of the last change */
 };
 
 /* Makes the record of a picture before its first doubling; estimate_finish releases it.

@@ -182,6 +182,32 @@ TEST(cut_rays_carry_twice_the_mean)
     estimate_finish(&estimate);
 }
 
+/* Threads estimate rows by bands of 16. */
+TEST(a_column_of_edges_is_estimated_alike_in_all_rows)
+{
+    enum { ROWS = 37 };
+    own_image a = fixture_flat(WIDTH, ROWS, 4, 0.5f), b = fixture_flat(WIDTH, ROWS, 4, 0.5f);
+    own_image cuts = fixture_flat(WIDTH, ROWS, 2, 0.0f), out = fixture_flat(WIDTH, ROWS, 1, 0.0f);
+    const struct image *const halves[2] = {&a, &b};
+    struct estimate estimate;
+    double of_cuts, row = 0.0;
+    for (size_t y = 0; y < ROWS; ++y) {
+        a.pixels[4 * (y * WIDTH + 2)] = 0.9f;
+        cuts.pixels[2 * y * WIDTH] = 0.25f;
+    }
+    assert_int_equal(estimate_init(&estimate, WIDTH, ROWS), WHIT_OK);
+    estimate_note_change(&estimate, halves, 1);
+    double whole = estimate_error(&estimate, &a, &cuts, 2.0, &out, &of_cuts);
+    for (size_t i = 0; i < (size_t)WIDTH * ROWS; ++i)
+        assert_float_equal(out.pixels[i], out.pixels[i % WIDTH], 0.0f);
+    for (size_t x = 0; x < WIDTH; ++x)
+        row += (double)out.pixels[x] * (double)out.pixels[x];
+    assert_true(out.pixels[2] > 0.3f);
+    assert_near(whole, sqrt(row / WIDTH) / 1.5);
+    assert_near(of_cuts, sqrt(1.0 / WIDTH) / 1.5);
+    estimate_finish(&estimate);
+}
+
 /* A pixel that is infinite in one half has an error that no bound meets, one that is infinite in
    both tells nothing. */
 TEST(infinite_pixels_leave_the_others_as_they_are)
