@@ -234,6 +234,16 @@ printf 'one tri.obj --size 16x12\ntwo tri.obj --size 16x12 --depth 0\n' >models.
 expect 4 "a model without its materials" check models.whit
 check "is drawn with a warning, once" test "$(grep -c "^whit: warning: .*nowhere.mtl" stderr)" -eq 1
 
+mkdir -p tree/scenes tree/models && cp tri.obj tree/models/ && cp tri.obj outside.obj
+echo '{ "objects": [ { "model": "../models/tri.obj" } ] }' >tree/scenes/tri.json
+echo 'tri scenes/tri.json --size 16x12' >tree/looks.whit
+expect 0 "a scene that names files elsewhere below the suite's folder" check tree/looks.whit --accept all --json tree.json
+again=$(jq -r '.cases[0].command' tree.json)
+check "the command that repeats it ($again)" sh -c "\"\$0\" ${again#whit }" "$WHIT"
+expect 0 "below --root" check tree/looks.whit --root tree
+sed -i 's,models/tri,../outside,' tree/scenes/tri.json
+refuse 2 "one that names files outside of it" "tree/scenes/tri.json:1.*it lies outside of the folder" check tree/looks.whit
+
 # Reports of a run that ends early have the verdicts so far, and `undrawn` for the other cases.
 printf 'small cube.json --size 16x12\nlarge cube.json --size 4000x3000 --aa 64\nother cube.json\n' >slow.whit
 undrawn() {

@@ -7,6 +7,7 @@
 #include "app/check/suite.h"
 #include "base/array.h"
 #include "base/input.h"
+#include "base/path.h"
 #include "settings/quote.h"
 
 enum { OPTIONS_BYTES = 16384 };
@@ -111,10 +112,25 @@ static bool find_file(const struct suite *suite, const struct check_case *item, 
     return good;
 }
 
+/* Lets the scene, which is in a folder below the suite's, name files anywhere below the suite's. */
+static bool allow_folder(struct settings *settings, const struct suite *suite,
+                         struct cli_reader *reader)
+{
+    char *folder = path_folder(suite->roots.named);
+    const char *named = folder && folder[0] ? folder : ".";
+    bool fits = folder && strlen(named) < sizeof settings->allowed[0];
+    if (fits)
+        strcpy(settings->allowed[0], named);
+    free(folder);
+    return fits || cli_misuse(reader, "the path of the suite's folder is too long");
+}
+
 static bool take_files(struct check_case *item, const struct suite *suite,
                        struct cli_reader *reader)
 {
     struct settings *settings = item->settings;
+    if (strchr(settings->scene, '/') && !allow_folder(settings, suite, reader))
+        return false;
     return find_file(suite, item, "the scene ", settings->scene, sizeof settings->scene, reader) &&
            (!settings->environment[0] ||
             find_file(suite, item, "--environment ", settings->environment,
