@@ -26,6 +26,13 @@ static const double EVEN = 0.02, UNEVEN = 0.1;
 /* Places along an axis that the surface is counted at. */
 enum { PLACES = 16 };
 
+/* The surface of a terrain covers its ground, even at the corners, but for this share; and only
+   this share of it is above another part of it. */
+static const double GAPS = 0.18, ABOVE = 0.25;
+/* Half of it slopes by more than SLIGHT, and the lesser of the slopes along two axes is no less
+   than this share of the other, unlike those of a curtain. */
+static const double SLIGHT = 0.01, OTHER_SLOPE = 0.3;
+
 /* Rotation matrices that turn each axis to +y; exact, since they only swap and negate
    coordinates. */
 static const double turns[][9] = {
@@ -64,6 +71,19 @@ static struct shape measure(const struct scene *scene)
             shape.hi[i % 3] = fmax(shape.hi[i % 3], value);
         }
     return shape;
+}
+
+static bool is_grounded(const struct shape *shape, int axis)
+{
+    return fabs(shape->lo[axis]) <= SLAB * (shape->hi[axis] - shape->lo[axis]);
+}
+
+/* A wall cabinet is above 0 on the axis that is up, and centred on the one along the wall. */
+static bool hangs(const struct shape *shape, int up, int along)
+{
+    return shape->lo[up] > SLAB * (shape->hi[up] - shape->lo[up]) &&
+           fabs(shape->lo[along] + shape->hi[along]) <=
+               SLAB * (shape->hi[along] - shape->lo[along]);
 }
 
 /* The area of a box along two axes. */
@@ -160,6 +180,32 @@ static struct ending look_below(const struct scene *scene, const struct shape *s
                         : (struct ending){0};
 }
 
+/* Whether the surface is a terrain whose heights are along the axis `up`. What stands with its
+   ground at 0 on the axis `other`, and on no third one, is a rough wall. */
+static bool is_terrain(const struct scene *scene, const struct shape *shape, int up, int other)
+{
+    int u = (up + 1) % 3, v = (up + 2) % 3;
+    double facing = 0.0, area = 0.0, sloping = 0.0, slopes[3] = {0};
+    for (uint32_t m = 0; m < scene->mesh_count; ++m)
+        for (uint32_t t = 0; t < scene->meshes[m].triangle_count; ++t) {
+            double p[3][3], edges[2][3], n[3];
+            scene_mesh_corners(&scene->meshes[m], t, p);
+            double3_sub(p[1], p[0], edges[0]);
+            double3_sub(p[2], p[0], edges[1]);
+            double3_cross(edges[0], edges[1], n);
+            double covered = 0.5 * fabs(n[up]);
+            facing += 0.5 * n[up];
+            area += covered;
+            sloping += fmax(fabs(n[u]), fabs(n[v])) > SLIGHT * fabs(n[up]) ? covered : 0.0;
+            slopes[u] += fabs(n[u]);
+            slopes[v] += fabs(n[v]);
+        }
+    bool stands = is_grounded(shape, other) && !is_grounded(shape, 3 - up - other);
+    return !stands && area > 0.0 && fabs(facing) >= (1.0 - GAPS) * area_of(shape, u, v) &&
+           area <= (1.0 + ABOVE) * fabs(facing) && sloping >= 0.5 * area &&
+           fmin(slopes[u], slopes[v]) >= OTHER_SLOPE * fmax(slopes[u], slopes[v]);
+}
+
 /* Whether the shape shows that one axis is up and not another one: it stands on its lower end, with
    the ground at 0 as modelling programs put it, and not on that of the other. */
 static bool stands_along(const struct scene *scene, const struct shape *shape, int up, int other)
@@ -168,16 +214,15 @@ static bool stands_along(const struct scene *scene, const struct shape *shape, i
     for (int k = 0; k < 3; ++k)
         extent[k] = shape->hi[k] - shape->lo[k];
     bool board = extent[up] < BOARD * fmin(extent[(up + 1) % 3], extent[(up + 2) % 3]);
-    bool grounded =
-        fabs(shape->lo[up]) <= SLAB * extent[up] && fabs(shape->lo[other]) > SLAB * extent[other];
-    if (board || !grounded)
+    if (board || !is_grounded(shape, up) || is_grounded(shape, other))
         return false;
     struct ending a = look_below(scene, shape, up), b = look_below(scene, shape, other);
     if ((a.flat >= STANDS && b.flat < HARDLY) || (a.low >= FLOOR && b.low < HARDLY) ||
         (a.feet >= FLOOR && !a.rim && b.feet < EDGE))
         return true;
     /* Things are more often the same on both sides than above and below. */
-    return !a.rim && unevenness(scene, shape, up) >= UNEVEN &&
+    bool hung = b.flat >= STANDS && hangs(shape, other, 3 - up - other);
+    return !a.rim && !hung && unevenness(scene, shape, up) >= UNEVEN &&
            (a.flat >= FLOOR || unevenness(scene, shape, other) <= EVEN);
 }
 
@@ -191,13 +236,15 @@ whit_up up_guess(const struct scene *scene, bool z_usual)
         return WHIT_UP_Y;
     struct ending y = look_below(scene, &shape, 1), z = look_below(scene, &shape, 2);
     if (z_usual)
-        return (y.flat >= STANDS && z.flat < HARDLY) || stands_along(scene, &shape, 1, 2)
+        return (y.flat >= STANDS && z.flat < HARDLY) || stands_along(scene, &shape, 1, 2) ||
+                       is_terrain(scene, &shape, 1, 2)
                    ? WHIT_UP_Y
                    : WHIT_UP_Z;
     /* A floor with something in its middle; a picture in a frame would fill most of the floor. */
     if (z.flat >= FLOOR && z.rest > 0.0 && z.rest < FLOOR && y.flat < HARDLY)
         return WHIT_UP_Z;
-    return stands_along(scene, &shape, 2, 1) ? WHIT_UP_Z : WHIT_UP_Y;
+    return stands_along(scene, &shape, 2, 1) || is_terrain(scene, &shape, 2, 1) ? WHIT_UP_Z
+                                                                                : WHIT_UP_Y;
 }
 
 whit_result up_turn_by_shape(struct scene *scene, const char *path)

@@ -2,6 +2,7 @@
    the middle of a sky or a backdrop. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
 #include "base/vec.h"
@@ -15,12 +16,15 @@
 #define SLAB      0.02  /* largest thickness of a floor, in radii of the scene */
 #define SKY       0.4   /* share of all directions that a sky covers at least */
 #define SKY_FAR   0.5   /* least radius of a sky, in radii of the scene */
-#define SKY_LEAST 48    /* triangles: a box of 12 is none */
+#define SKY_LEAST 48    /* triangles of a round sky */
+#define SIDE      0.9   /* share of each side of the scene's box that a box of sky covers */
 #define ROUND     0.85 /* distance of its nearest corner from its middle, in that of the farthest */
 #define SCRAPS    0.01 /* what is outside of a part may have this area, in squared diagonals, */
 #define MARGIN    0.15 /* or it surrounds the part, with this share of its width on each side, */
 #define FACING    0.8  /* or this share of its area faces the part */
 #define DIAGONAL  2.0  /* of the scene, in the space of a soup */
+
+#define SIDES     6
 
 /* aside: 1 for triangles of floor and sky; `counted`: how many others there are. */
 struct narrowing {
@@ -75,8 +79,10 @@ static void put_floor_aside(struct narrowing *n)
     const struct soup *soup = n->soup;
     double enough = FLOOR * 4.0 * soup->half[0] * soup->half[2];
     uint32_t low = 0;
-    for (size_t t = 0; t < soup->count; ++t)
-        add_to_level(soup->corners + 9 * t, levels);
+    for (size_t t = 0; t < soup->count; ++t) {
+        if (!n->aside[t])
+            add_to_level(soup->corners + 9 * t, levels);
+    }
     while (low < BINS && !(levels[low].area >= enough))
         ++low;
     if (low == BINS)
@@ -145,6 +151,53 @@ static bool put_sky_aside(struct narrowing *n, const double middle[3])
     return found;
 }
 
+/* The area of a triangle, and whether its front faces a point. */
+static double area_facing(const float *corners, const double point[3], bool *facing)
+{
+    double edges[2][3], way[3], normal[3];
+    for (int i = 0; i < 6; ++i)
+        edges[i / 3][i % 3] = (double)corners[3 + i] - (double)corners[i % 3];
+    for (int k = 0; k < 3; ++k)
+        way[k] = point[k] - (double)corners[k];
+    double3_cross(edges[0], edges[1], normal);
+    *facing = double3_dot(normal, way) > 0.0;
+    return 0.5 * double3_length(normal);
+}
+
+/* The side of the scene's box that a triangle lies in; SIDES: in none. */
+static int side_of(const struct soup *soup, const float *p)
+{
+    for (int side = 0; side < SIDES; ++side) {
+        int k = side / 2;
+        double at = side % 2 ? soup->half[k] : -soup->half[k];
+        if (fmax(fmax(fabs((double)p[k] - at), fabs((double)p[k + 3] - at)),
+                 fabs((double)p[k + 6] - at)) <= (double)FLAT)
+            return side;
+    }
+    return SIDES;
+}
+
+/* Puts the sides of the scene's box aside if all six are there and face inwards. */
+static bool put_box_aside(struct narrowing *n)
+{
+    const struct soup *soup = n->soup;
+    const double *half = soup->half, middle[3] = {0};
+    double areas[SIDES + 1] = {0};
+    bool all = true, facing;
+    for (size_t t = 0; t < soup->count; ++t) {
+        double area = area_facing(soup->corners + 9 * t, middle, &facing);
+        areas[side_of(soup, soup->corners + 9 * t)] += facing ? area : 0.0;
+    }
+    for (int side = 0; side < SIDES; ++side)
+        all =
+            all && areas[side] >= SIDE * 4.0 * half[(side / 2 + 1) % 3] * half[(side / 2 + 2) % 3];
+    for (size_t t = 0; all && t < soup->count; ++t) {
+        if (side_of(soup, soup->corners + 9 * t) < SIDES)
+            put_aside(n, t);
+    }
+    return all;
+}
+
 /* --- the part ------------------------------------------------------------------------------- */
 
 static double size_of(const struct part *part)
@@ -188,6 +241,19 @@ static bool is_in(const float *corners, const struct part *part)
     return in;
 }
 
+/* Whether all that is not aside is far from the sides of the scene's box, as things in a room,
+   which stand on its floor, are not. */
+static bool hovers(const struct narrowing *n)
+{
+    struct part middle;
+    bool all = true;
+    for (int k = 0; k < 3; ++k)
+        middle.hi[k] = (1.0 - 2.0 * MARGIN) * n->soup->half[k], middle.lo[k] = -middle.hi[k];
+    for (size_t t = 0; all && t < n->soup->count; ++t)
+        all = n->aside[t] || is_in(n->soup->corners + 9 * t, &middle);
+    return all;
+}
+
 /* The box of all triangles whose corners are in the core, or outside of it by no more than `around`
    along each axis. *count: how many there are. */
 static struct part find_box(const struct narrowing *n, struct part core, double around,
@@ -219,15 +285,10 @@ struct rest {
 
 static void add_to_rest(const float *corners, const double toward[3], struct rest *rest)
 {
-    double edges[2][3], way[3], normal[3];
-    for (int i = 0; i < 6; ++i)
-        edges[i / 3][i % 3] = (double)corners[3 + i] - (double)corners[i % 3];
-    for (int k = 0; k < 3; ++k)
-        way[k] = toward[k] - (double)corners[k];
-    double3_cross(edges[0], edges[1], normal);
-    double area = 0.5 * double3_length(normal);
+    bool facing;
+    double area = area_facing(corners, toward, &facing);
     rest->area += area;
-    rest->facing += double3_dot(normal, way) > 0.0 ? area : 0.0;
+    rest->facing += facing ? area : 0.0;
     grow(&rest->box, corners);
 }
 
@@ -328,12 +389,20 @@ whit_result soup_narrow(const struct soup *soup, struct soup *narrow)
     struct narrowing n = {soup, array_alloc_zeroed(soup->count, 1), soup->count};
     if (!n.aside)
         return WHIT_ERROR_MEMORY;
+    bool boxed = put_box_aside(&n);
     put_floor_aside(&n);
-    bool under_sky = put_sky_aside(&n, (const double[]){0, 0, 0}) ||
+    if (boxed && !hovers(&n)) {
+        boxed = false;
+        memset(n.aside, 0, soup->count);
+        n.counted = soup->count;
+        put_floor_aside(&n);
+    }
+    bool under_sky = boxed || put_sky_aside(&n, (const double[]){0, 0, 0}) ||
                      put_sky_aside(&n, (const double[]){0, -soup->half[1], 0});
     bool found = n.counted > 0 && find_part(&n, &part);
     whit_result result = found ? take_part(&n, &part, narrow) : WHIT_OK;
     narrow->under_sky = under_sky;
+    narrow->in_box = boxed;
     free(n.aside);
     return result;
 }

@@ -14,7 +14,8 @@ struct soup {
     uint32_t fit_count; /* triangles that the view has to show: may be more than `count`, by those
                            of moving instances at later times, or fewer, by soup_narrow */
     bool whole;         /* has all triangles; false: only boxes around instances, for the fit */
-    bool under_sky;     /* by soup_narrow: a sphere, or half of one, is around the part */
+    bool under_sky; /* by soup_narrow: a sphere, half of one, or a box of sky is around the part */
+    bool in_box;    /* it is a box */
     double centre[3], radius, half[3];
     /* The farthest corner in each cell of a cube map of directions, enough for a first fit. */
     float outline[6 * SOUP_CELLS * SOUP_CELLS][3];

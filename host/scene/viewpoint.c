@@ -207,39 +207,31 @@ static double shown_share(const struct soup *narrow, const struct view *view)
     return covered ? (double)shown / covered : 0.0;
 }
 
-/* Chooses a view from outside, fitted to a small part of the scene if nearly all triangles are
-   there and nothing hides them. */
-static whit_result look_from_outside(const struct soup *soup, struct viewpoint *out)
+/* Chooses a view from outside of a small part of the scene. False: something hides the part. */
+static bool choose_part(const struct soup *narrow, uint32_t *way, struct view *view)
 {
-    struct soup narrow;
-    struct view view;
-    uint32_t way;
-    whit_result result = soup_narrow(soup, &narrow);
-    if (result != WHIT_OK)
-        return result;
-    out->part = narrow.count > 0;
-    if (out->part) {
-        choose_outside(&narrow, &way, &view);
-        out->part = shown_share(&narrow, &view) >= SHOWN_ENOUGH;
-        out->under_sky = out->part && narrow.under_sky;
-    }
-    const struct soup *seen = out->part ? &narrow : soup;
-    if (!out->part)
-        choose_outside(soup, &way, &view);
+    if (!narrow->count)
+        return false;
+    choose_outside(narrow, way, view);
+    return shown_share(narrow, view) >= SHOWN_ENOUGH;
+}
+
+/* `seen`: the scene, or the small part of it that the view is fitted to. */
+static void look_from_outside(const struct soup *seen, uint32_t way, const struct view *view,
+                              struct viewpoint *out)
+{
     out->kind = way >= STRAIGHT_FIRST ? VIEWPOINT_STRAIGHT
                 : way                 ? VIEWPOINT_TURNED
                                       : VIEWPOINT_CORNER;
     out->fov_y = VIEW_FOV_Y;
-    double distance = -double3_dot(view.eye, view.forward);
-    place_view(seen, &view, distance, out);
+    double distance = -double3_dot(view->eye, view->forward);
+    place_view(seen, view, distance, out);
     for (int i = 0; out->part && i < 3; ++i) {
         out->lo[i] = seen->centre[i] - seen->radius * seen->half[i];
         out->hi[i] = seen->centre[i] + seen->radius * seen->half[i];
     }
     for (int i = 0; i < 3; ++i)
-        out->lamp[i] = out->eye[i] + 0.5 * seen->radius * distance * (view.up[i] - view.right[i]);
-    soup_finish(&narrow);
-    return WHIT_OK;
+        out->lamp[i] = out->eye[i] + 0.5 * seen->radius * distance * (view->up[i] - view->right[i]);
 }
 
 static void look_from_inside(const struct soup *soup, const struct view *view, double ahead,
@@ -259,21 +251,37 @@ static void look_from_inside(const struct soup *soup, const struct view *view, d
     }
 }
 
+/* A room is seen from inside, and what hovers in a box of sky is not in a room. */
+static void choose(const struct soup *soup, const struct soup *narrow, struct viewpoint *out)
+{
+    struct view view;
+    uint32_t way = 0;
+    double ahead = 0.0;
+    bool part = choose_part(narrow, &way, &view);
+    if (!(part && narrow->in_box) && has_walls(soup) && choose_inside(soup, &view, &ahead)) {
+        look_from_inside(soup, &view, ahead, out);
+        return;
+    }
+    out->part = part;
+    out->under_sky = part && narrow->under_sky;
+    if (!part)
+        choose_outside(soup, &way, &view);
+    look_from_outside(part ? narrow : soup, way, &view, out);
+}
+
 whit_result viewpoint_choose(const struct scene *scene, const struct scene_pose *pose,
                              struct viewpoint *out)
 {
-    struct soup soup;
-    struct view view;
-    double ahead = 0.0;
+    struct soup soup, narrow;
     *out = (struct viewpoint){0};
     double3_no_box(out->lo, out->hi);
     whit_result result = soup_init(scene, pose, &soup);
     if (result != WHIT_OK)
         return result;
-    if (has_walls(&soup) && choose_inside(&soup, &view, &ahead))
-        look_from_inside(&soup, &view, ahead, out);
-    else
-        result = look_from_outside(&soup, out);
+    result = soup_narrow(&soup, &narrow);
+    if (result == WHIT_OK)
+        choose(&soup, &narrow, out);
+    soup_finish(&narrow);
     soup_finish(&soup);
     return result;
 }

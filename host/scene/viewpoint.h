@@ -17,7 +17,7 @@ struct viewpoint {
     double fov_y;
     bool part;      /* shows a small part that nearly all triangles are in, floor and sky aside;
                        false: all of the scene */
-    bool under_sky; /* the part is inside of a sphere, or half of one, that keeps out light */
+    bool under_sky; /* the part is inside of a sphere, half of one or box, which keeps out light */
     double lo[3], hi[3]; /* bounds of what is shown: of the part, INSIDE: of a cube around the
                             target; lo > hi: it is everything */
     /* World position of a lamp; INSIDE: ahead of the eye, and from there half of the free distance

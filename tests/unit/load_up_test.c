@@ -131,6 +131,59 @@ TEST(boards_keep_standing_and_floors_lie)
     assert_int_equal(up_guess(scene, false), WHIT_UP_Z);
 }
 
+/* A surface of waves, with equal slopes along x and z or (`folds`) along x alone. */
+static struct scene_mesh waves(bool folds)
+{
+    struct scene_mesh mesh = mesh_terrain(4, 1, 32, 1);
+    for (uint32_t k = 0; k < mesh.vertex_count; ++k) {
+        float *p = mesh.positions + 3 * (size_t)k;
+        p[1] = 0.3f * sinf(3 * p[0]) + (folds ? 0.0f : 0.3f * sinf(3 * p[2]));
+    }
+    return mesh;
+}
+
+TEST(terrains_lie_and_curtains_hang)
+{
+    for (int high = 0; high < 2; ++high) {
+        float at = high ? 300 : 0;
+        assert_int_equal(guess(raised(waves(false), at), true, false), WHIT_UP_Z);
+        assert_int_equal(guess(raised(waves(false), at), false, false), WHIT_UP_Y);
+        assert_int_equal(guess(raised(waves(false), at), false, true), WHIT_UP_Y);
+    }
+    assert_int_equal(guess(waves(true), true, false), WHIT_UP_Y);
+    /* A rough wall that stands on the ground. */
+    assert_int_equal(guess(raised(laid(waves(false)), 2), false, false), WHIT_UP_Y);
+    /* A shell without corners. */
+    struct scene_mesh shell = waves(false);
+    for (uint32_t k = 0; k < 3 * shell.triangle_count; k += 3) {
+        const float *p = shell.positions + 3 * (size_t)shell.indices[k];
+        if (hypotf(p[0], p[2]) > 2.0f)
+            shell.indices[k] = shell.indices[k + 1] = shell.indices[k + 2];
+    }
+    assert_int_equal(guess(shell, true, false), WHIT_UP_Y);
+}
+
+/* A cave that is open at the front, with a ball in it. */
+TEST(caves_with_something_inside_stand)
+{
+    own_scene *scene = lying(waves(false), true);
+    scene_put(scene, mesh_icosphere(1.9, 3), NULL);
+    assert_int_equal(up_guess(scene, false), WHIT_UP_Y);
+}
+
+/* A cabinet with a knob, whose back is in the plane z = 0, above the floor. */
+TEST(what_hangs_on_a_wall_is_not_laid)
+{
+    own_scene *scene = scene_begin(NULL, "test");
+    struct scene_mesh parts[] = {mesh_box(1, 0.7, 0.35), mesh_box(0.02, 0.02, 0.04)};
+    for (int i = 0; i < 2; ++i) {
+        for (uint32_t k = 0; k < parts[i].vertex_count; ++k)
+            parts[i].positions[3 * (size_t)k + 2] += i ? 0.37f : 0.175f;
+        scene_put(scene, raised(parts[i], 1.6f), NULL);
+    }
+    assert_int_equal(up_guess(scene, false), WHIT_UP_Y);
+}
+
 /* A ball on a plane, nearer to one side; a share of its height is below the plane. */
 static whit_up guess_site(double share)
 {

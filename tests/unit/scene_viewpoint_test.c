@@ -253,13 +253,14 @@ TEST(solids_are_no_skies)
     assert_false(shows_ball(planet));
 }
 
-/* A sphere around everything, turned inwards or not, or the upper half of one on a floor. No light
-   gets in from outside. */
+/* A sphere around everything, turned inwards or not, the upper half of one on a floor, or a box. No
+   light gets in from outside. */
 TEST(skies_do_not_count)
 {
-    for (int kind = 0; kind < 3; ++kind) {
-        struct scene_mesh sky = mesh_sphere(60, 32, 16);
-        for (uint32_t i = 0; kind != 0 && i < 3 * sky.triangle_count; i += 3) {
+    for (int kind = 0; kind < 4; ++kind) {
+        struct scene_mesh sky =
+            kind == 3 ? walls((const float[]){60, 60, 60}, 0, false) : mesh_sphere(60, 32, 16);
+        for (uint32_t i = 0; (kind == 1 || kind == 2) && i < 3 * sky.triangle_count; i += 3) {
             uint32_t first = sky.indices[i];
             sky.indices[i] = sky.indices[i + 1];
             sky.indices[i + 1] = first;
@@ -273,6 +274,19 @@ TEST(skies_do_not_count)
         for (int k = 0; k < 3; ++k)
             assert_true(scene->lights[0].position[k] != scene->lights[1].position[k]);
     }
+}
+
+/* A box of sky may have a floor at half of its height. In a room things stand on its bottom. */
+TEST(what_stands_on_the_bottom_of_a_box_is_in_a_room)
+{
+    const float half[] = {60, 60, 60};
+    own_scene *floor = ball_and(walls(half, 0, false), (const double[3]){0}, 1);
+    scene_put(floor, mesh_plane(120), NULL);
+    assert_true(shows_ball(floor));
+    own_scene *room = ball_and(walls(half, 0, false), (const double[3]){0, 60, 0}, 1);
+    double forward[3];
+    camera_of(room, forward);
+    assert_true(scene_noted(room, "for it is a room"));
 }
 
 /* The tips of these cones are far from the centroids of their triangles. */
