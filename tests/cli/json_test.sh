@@ -116,4 +116,11 @@ comm -13 have want >gone
 comm -23 have want >new
 check "no key is gone: $(tr '\n' ',' <gone)" test ! -s gone
 check "every key is in json_keys.txt, new: $(head -20 new | tr '\n' ',')" test ! -s new
+
+# Words in backquotes, which may be broken by the end of a line.
+for page in cli batch shaders view; do
+    tr '\n' ' ' <"$HERE/../../docs/$page.md" | tr '`' '\n' | awk 'NR % 2 == 0'
+done | tr -c 'a-z0-9_' '\n' | sort -u >told
+awk '{ for (i = 3; i <= NF; ++i) print $i }' rows | sort -u | comm -23 - told >untold
+check "every key is in the docs, not: $(tr '\n' ',' <untold)" test ! -s untold
 finish
