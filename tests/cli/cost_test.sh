@@ -50,6 +50,8 @@ check "the page holds the JSON and pictures of its own" jq -e --slurpfile json "
     all($page.pictures[0][]; startswith("data:image/png;base64,iVBOR")) and ($page.method | length) > 1 and
     ($page.crop | .x + .width <= 48 and .y + .height <= 36)' "$P"
 check "the terminal says which settings these are" test "$(grep -c "^Best picture within .*: --.*: kept" "$OUT/stdout")" -eq 3
+check "it promises no error where the reference has too few samples to tell" \
+    grep -q "^Best picture within 1e+06 ms: .* ms and an error that a reference of no more samples cannot tell (ms" "$OUT/known"
 # By these clocks only samples take time.
 check "it shows what 4 and 16 times the time bring" jq -e '. as $all |
     [.answers[] | select(.of_usual)] | map(.of_usual) == [0.25, 4, 16] and

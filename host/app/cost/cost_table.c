@@ -240,7 +240,7 @@ static void say_answer(const struct cost_report *report, const struct cost_answe
                answer->ms, metric, answer->error);
         return;
     }
-    char error[64] = "no error, by a reference of no more samples";
+    char error[64] = "an error that a reference of no more samples cannot tell";
     if (cost_is_judged(report, row))
         snprintf(error, sizeof error, "%.3g", cost_error_of(&row->error, answer->goal.metric));
     say_it(say, user,
