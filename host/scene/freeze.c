@@ -290,6 +290,44 @@ static whit_result drop_unused_meshes(struct scene *scene)
     return WHIT_OK;
 }
 
+/* Whether the material has a texture whose texels a mesh with these coordinates cannot tell
+   apart. */
+static bool shows_one_texel(const struct scene *scene, const struct scene_mesh *mesh,
+                            const struct scene_material *material)
+{
+    for (int slot = 0; slot < SCENE_SLOT_COUNT; ++slot) {
+        const struct scene_texture_use *use = &material->textures[slot];
+        if (use->texture == SCENE_NONE || mesh->uvs[0] || mesh->uvs[use->uv_set])
+            continue;
+        const struct scene_texture *texture = &scene->textures[use->texture];
+        if (texture->width > 1 || texture->height > 1)
+            return true;
+    }
+    return false;
+}
+
+static whit_result check_uvs(struct scene *scene)
+{
+    const struct scene_mesh *first = NULL;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->mesh_count; ++i) {
+        const struct scene_mesh *mesh = &scene->meshes[i];
+        const uint32_t *materials = mesh->materials;
+        bool lacks = false;
+        for (uint32_t t = 0; !lacks && t < mesh->triangle_count; ++t)
+            lacks = (!t || materials[t] != materials[t - 1]) &&
+                    shows_one_texel(scene, mesh, &scene->materials[materials[t]]);
+        count += lacks;
+        first = lacks && !first ? mesh : first;
+    }
+    if (first)
+        scene_note(scene, SCENE_NOTE_WARNING,
+                   "mesh `%s` has textures and no texture coordinates: they show one texel (meshes "
+                   "of this kind: %u)",
+                   text_token(first->name).text, count);
+    return WHIT_OK;
+}
+
 static bool usable_light(const struct scene_light *light)
 {
     bool finite = true;
@@ -433,8 +471,9 @@ static whit_result check_environment(struct scene *scene)
 
 /* In this order: each relies on those before it. */
 static whit_result (*const checks[])(struct scene *scene) = {
-    check_nodes,     check_channels,     check_textures, check_materials, check_meshes,
-    check_instances, drop_unused_meshes, check_lights,   check_cameras,   check_environment,
+    check_nodes,  check_channels,  check_textures,     check_materials,
+    check_meshes, check_instances, drop_unused_meshes, check_uvs,
+    check_lights, check_cameras,   check_environment,
 };
 
 /* Logs the lack of memory once, whichever step ran out of it; passes `result` on. */

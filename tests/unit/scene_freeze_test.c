@@ -166,6 +166,30 @@ TEST(materials_are_mended)
     assert_true(scene_noted(scene, "material `odd`: 3 values"));
 }
 
+/* A texture of one texel and a mesh with coordinates are as they should be. */
+TEST(textures_without_coordinates_are_told_once)
+{
+    const uint8_t texels[8] = {0};
+    for (uint32_t width = 1; width <= 2; ++width) {
+        own_scene *scene = scene_begin(NULL, "test");
+        struct scene_material material = material_grey("painted");
+        material.textures[SCENE_SLOT_DIFFUSE].texture = scene_put_texture(scene, width, 1, texels);
+        material.textures[SCENE_SLOT_DIFFUSE].uv_set = 1;
+        scene_put(scene, mesh_box(1, 1, 1), &(struct put){.name = "box", .material = &material});
+        const char *const names[] = {"bare", "naked"};
+        for (int i = 0; i < 2; ++i) {
+            struct scene_mesh mesh = mesh_box(1, 1, 1);
+            free(mesh.uvs[0]);
+            mesh.uvs[0] = NULL;
+            scene_put(scene, mesh, &(struct put){.name = names[i], .material = &material});
+        }
+        scene_ready(scene);
+        assert_int_equal(scene_noted(scene, "mesh `bare` has textures and no texture coordinates: "
+                                            "they show one texel (meshes of this kind: 2)"),
+                         width > 1);
+    }
+}
+
 TEST(broken_references_are_refused)
 {
     struct scene *scenes[4];
