@@ -183,9 +183,14 @@ static bool read_lights(struct reader *reader, const struct place *place, const 
 static bool read_map(struct reader *reader, const struct place *place, const json_t *value)
 {
     static const char *const keys[] = {"map", "scale", NULL};
+    static const char *const others[] = {"zenith", "horizon", "ground"};
     const char *name = NULL;
     float scale[3] = {1, 1, 1};
     struct place here = {place, "map", 0};
+    for (size_t i = 0; i < sizeof others / sizeof *others; ++i) {
+        if (json_object_get(value, others[i]))
+            return reader_fail(reader, &here, "`map` and `%s` exclude each other", others[i]);
+    }
     if (!reader_object(reader, place, value, keys) ||
         !reader_string(reader, place, value, "map", &name) ||
         !reader_color(reader, place, value, "scale", scale))

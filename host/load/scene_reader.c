@@ -148,7 +148,8 @@ static const char *syntax_hint(const char *error)
         return "; is the comma before it one too many?";
     if (strncmp(error, "'}' expected near", 17) == 0 ||
         strncmp(error, "']' expected near", 17) == 0)
-        return "; is a comma missing before it?";
+        return strstr(error, "end of file") ? "; it has to be closed"
+                                            : "; is a comma missing before it?";
     return "";
 }
 
@@ -421,6 +422,22 @@ bool reader_numbers(struct reader *reader, const struct place *place, const json
     const json_t *value = json_object_get(object, key);
     struct place here = {place, key, 0};
     return !value || reader_vector(reader, &here, value, count, out);
+}
+
+bool reader_extent(struct reader *reader, const struct place *place, const json_t *object,
+                   const char *key, double min, double max, size_t count, double *out)
+{
+    const json_t *value = json_object_get(object, key);
+    struct place here = {place, key, 0};
+    if (json_array_size(value) == count)
+        return reader_vector(reader, &here, value, count, out);
+    if (value && !json_is_number(value))
+        return reader_fail(reader, &here, "a number, or %zu numbers in [ ], are expected", count);
+    if (!reader_number(reader, place, object, key, min, max, &out[0]))
+        return false;
+    for (size_t i = 1; value && i < count; ++i)
+        out[i] = out[0];
+    return true;
 }
 
 static bool hex_color(const char *text, float out[3])

@@ -89,6 +89,9 @@ bool reader_numbers(struct reader *reader, const struct place *place, const json
 /* The same for a JSON value instead of an object's key. */
 bool reader_vector(struct reader *reader, const struct place *place, const json_t *value,
                    size_t count, double *out);
+/* Reads one number from `min` to `max`, which stands for all `count`, or an array of so many. */
+bool reader_extent(struct reader *reader, const struct place *place, const json_t *object,
+                   const char *key, double min, double max, size_t count, double *out);
 /* Reads a colour: a grey level or [r, g, b], both linear, or "#rrggbb" in sRGB. */
 bool reader_color(struct reader *reader, const struct place *place, const json_t *object,
                   const char *key, float out[3]);

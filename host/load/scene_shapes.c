@@ -39,18 +39,8 @@ const char *const *const shape_keys[SHAPE_COUNT] = {
 static bool read_size(struct reader *reader, const struct place *place, const json_t *object,
                       size_t count, double *out)
 {
-    const json_t *value = json_object_get(object, "size");
     struct place here = {place, "size", 0};
-    if (!value)
-        return true;
-    if (json_is_number(value)) {
-        if (!reader_number(reader, place, object, "size", 1e-15, SHAPE_SIZE_MAX, &out[0]))
-            return false;
-        for (size_t i = 1; i < count; ++i)
-            out[i] = out[0];
-        return true;
-    }
-    if (!reader_vector(reader, &here, value, count, out))
+    if (!reader_extent(reader, place, object, "size", 1e-15, SHAPE_SIZE_MAX, count, out))
         return false;
     for (size_t i = 0; i < count; ++i) {
         if (!(out[i] > 0.0 && out[i] <= SHAPE_SIZE_MAX))

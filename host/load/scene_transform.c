@@ -21,16 +21,9 @@ static bool read_matrix(struct reader *reader, const struct place *place, const 
 static bool read_scale(struct reader *reader, const struct place *place, const json_t *object,
                        double out[3])
 {
-    const json_t *value = json_object_get(object, "scale");
     struct place here = {place, "scale", 0};
-    if (!json_is_number(value)) {
-        if (!reader_numbers(reader, place, object, "scale", 3, out))
-            return false;
-    } else {
-        if (!reader_number(reader, place, object, "scale", -1e15, 1e15, &out[0]))
-            return false;
-        out[1] = out[2] = out[0];
-    }
+    if (!reader_extent(reader, place, object, "scale", -1e15, 1e15, 3, out))
+        return false;
     if (out[0] == 0.0 || out[1] == 0.0 || out[2] == 0.0)
         return reader_fail(reader, &here, "a scale of 0 leaves nothing");
     return true;

@@ -74,6 +74,13 @@ TEST_IN(errors_name_line_and_column, folder_begin, folder_end)
                  "4:1: objects[0].translation[2]: a number is expected");
     assert_error("{'objects':[{'shape':'box', 'translation':[0,0]}]}",
                  "1:29: objects[0].translation: 3 numbers in [ ] are expected");
+    assert_error("{'objects':[{'shape':'plane', 'size':[1,2,3]}]}",
+                 "1:31: objects[0].size: a number, or 2 numbers in [ ], are expected");
+    assert_error("{'objects':[{'shape':'box', 'scale':'big'}]}",
+                 "1:29: objects[0].scale: a number, or 3 numbers in [ ], are expected");
+    assert_error("{'environment': {'map': 'a.hdr',\n'zenith': 1}}",
+                 "1:18: environment.map: `map` and `zenith` exclude each other");
+    assert_error("{'objects': [\n{}", "2:2: ']' expected near end of file; it has to be closed");
     assert_error("[]", "1:1: an object { } is expected");
     assert_error("{'a': 1, 'a': 2}", "1:");
     assert_error("", "1:1: ");
