@@ -133,6 +133,14 @@ static double focus_distance(const struct scene_camera *camera)
                                          : double3_distance(camera->target, camera->eye);
 }
 
+/* Rays' directions have components up to the lens over its focus, whose squares must be floats; in
+   units of the picture's sides the lens must be a float too. */
+static bool lens_fits_floats(const struct scene_camera *camera, double focus, double side)
+{
+    double size = (double)camera->lens_radius / focus;
+    return size <= 0x1p60 && size / side <= 0x1p100;
+}
+
 whit_result camera_frame(const whit_log *log, const struct scene_pose *pose,
                          const whit_camera *wanted, uint32_t width, uint32_t height,
                          struct gpu_frame *frame, uint32_t *kind)
@@ -160,6 +168,8 @@ whit_result camera_frame(const whit_log *log, const struct scene_pose *pose,
     if (camera.kind == WHIT_CAMERA_PERSPECTIVE && !has_lens)
         return refuse(log, &camera, "the lens or its focus is below 0 or not finite");
     double aspect = *kind == CAMERA_PANORAMA ? 1.0 : (double)width / (double)height;
+    if (*kind == CAMERA_LENS && !lens_fits_floats(&camera, focus, half * fmin(aspect, 1.0)))
+        return refuse(log, &camera, "the lens is too wide for its focus or its field of view");
     scale_to_float(camera.eye, 1.0, frame->eye);
     scale_to_float(forward, 1.0, frame->forward);
     scale_to_float(right, half * aspect, frame->right);

@@ -46,8 +46,8 @@ typedef struct whit_camera {
     double eye[3], target[3], up[3]; /* world space; finite, also as floats */
     double fov_y_degrees;            /* PERSPECTIVE: vertical, between 0 and 180 */
     double height;                   /* ORTHOGRAPHIC: of the picture, world units; above 0 */
-    double lens_radius;              /* PERSPECTIVE: radius of a thin lens, world units; 0: a
-                                        pinhole */
+    double lens_radius;              /* PERSPECTIVE: radius of a thin lens, world units, at most
+                                        2^60 times focus_distance; 0: a pinhole */
     double focus_distance;           /* with a lens: distance of focus along the view direction,
                                         world units; 0: that of the target */
 } whit_camera;

@@ -59,6 +59,11 @@ TEST_IN(values_out_of_range_are_refused, begin, device_end)
     params.camera.lens_radius = 0.1;
     params.camera.focus_distance = -1.0;
     refuse(device, &params, "the lens or its focus is below 0");
+    params.camera.focus_distance = 1e-30;
+    refuse(device, &params, "the lens is too wide for its focus or its field of view");
+    params.camera.focus_distance = 1.0;
+    params.camera.fov_y_degrees = 1e-38;
+    refuse(device, &params, "the lens is too wide for its focus or its field of view");
     params.camera.kind = WHIT_CAMERA_ORTHOGRAPHIC;
     refuse(device, &params, "the height of the picture is not above 0");
     params = small();
