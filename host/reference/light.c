@@ -102,7 +102,10 @@ bool light_at(const struct tracer *tracer, const struct scene_light *light, uint
    cosine between n and the normal of the plane through the point and the edge. */
 static double edge_term(struct dvec3 n, struct dvec3 a, struct dvec3 b)
 {
-    struct dvec3 normal = dvec3_cross(a, dvec3_sub(b, a));
+    /* a x b, by the difference and the shorter of the two: nothing cancels. */
+    bool longer = dvec3_dot(a, a) > dvec3_dot(b, b);
+    struct dvec3 normal =
+        longer ? dvec3_cross(dvec3_sub(a, b), b) : dvec3_cross(a, dvec3_sub(b, a));
     double size = d3_length(normal);
     return size > 0.0 ? same_atan2(size, dvec3_dot(a, b)) * dvec3_dot(n, normal) / size : 0.0;
 }
@@ -118,8 +121,11 @@ static int clip_to_horizon(struct dvec3 n, const struct dvec3 *corners, int coun
         double up_a = dvec3_dot(n, a), up_b = dvec3_dot(n, b);
         if (up_a > 0.0)
             out[kept++] = a;
-        if ((up_a > 0.0) != (up_b > 0.0))
-            out[kept++] = dvec3_along(a, dvec3_sub(b, a), up_a / (up_a - up_b));
+        if ((up_a > 0.0) == (up_b > 0.0))
+            continue;
+        out[kept++] = dvec3_dot(a, a) > dvec3_dot(b, b)
+                          ? dvec3_along(b, dvec3_sub(a, b), up_b / (up_b - up_a))
+                          : dvec3_along(a, dvec3_sub(b, a), up_a / (up_a - up_b));
     }
     return kept;
 }
@@ -134,8 +140,10 @@ double light_form_factor(const struct scene_light *light, struct dvec3 p, struct
         c0, d3_add(c0, u), triangle ? d3_add(c0, v) : d3_add(d3_add(c0, u), v), d3_add(c0, v)};
     double height = -dvec3_dot(c0, direction), sum = 0.0;
     /* The point is in the emitter's plane, within the rounding of corners to floats. */
-    if (fabs(height) <=
-        (double)FLT_EPSILON * (d3_length(p) + d3_length(dvec3_load(light->position))))
+    double rounded = fabs(direction.x) * (fabs(p.x) + fabs(light->position[0])) +
+                     fabs(direction.y) * (fabs(p.y) + fabs(light->position[1])) +
+                     fabs(direction.z) * (fabs(p.z) + fabs(light->position[2]));
+    if (fabs(height) <= (double)FLT_EPSILON * rounded)
         return 0.0;
     int count = clip_to_horizon(n, corners, triangle ? 3 : 4, clipped);
     for (int i = 0; i < count; ++i)

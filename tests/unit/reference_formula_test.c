@@ -255,6 +255,30 @@ TEST(emitters_follow_their_form_factor)
     assert_close(pixel_light(scene, &of_one_pixel), 5 * factor, 2e-6);
 }
 
+/* A sheet whose corner is 0.3 and 0.2 beside a point 2 above the floor, and an endless one: closed
+   forms as for the rectangle above. */
+TEST(wide_emitters_fill_their_part_of_the_sky)
+{
+    const double widths[] = {1e5, 1e9, 1e12, 1e15}, x = 0.3, z = 0.2;
+    double a = sqrt(4 + x * x), b = sqrt(4 + z * z);
+    double quarter =
+        0.25 - x / a / 4 - z / b / 4 + (x / a * atan(z / a) + z / b * atan(x / b)) / (2 * PI);
+    for (int i = 0; i < 12; ++i) {
+        double wide = widths[i / 3], u = wide * 0.96, v = wide * 0.28, e = x, f = z;
+        if (i % 3 == 0)
+            e = f = -0.5 * wide;
+        struct scene *scene = floor_scene(8);
+        scene_put_light(scene, (struct scene_light){
+                                   .kind = i % 3 == 2 ? WHIT_LIGHT_TRIANGLE : WHIT_LIGHT_RECTANGLE,
+                                   .node = SCENE_NONE,
+                                   .position = {e * 0.96 - f * 0.28, 2, e * 0.28 + f * 0.96},
+                                   .edge_u = {u, 0, v},
+                                   .edge_v = {-v, 0, u},
+                                   .color = {5, 5, 5}});
+        assert_close(pixel_light(scene, &of_one_pixel), i % 3 ? 5 * quarter : 5.0, 1e-4);
+    }
+}
+
 /* Light through sheets is multiplied by 1 - opacity for each; with whole_stops by the rounded value
    of the kernels. */
 TEST(filters_multiply)

@@ -88,6 +88,56 @@ TEST_BY_TURNS(emitters_give_their_integral, 0, 4)
     }
 }
 
+/* The form factor from a floor to the rectangle between the point `h` above and the corner (x, h,
+   z) (Howell, Menguc and Siegel 2010, configuration B-4). */
+static double corner_factor(double x, double z, double h)
+{
+    double a = sqrt(h * h + x * x), b = sqrt(h * h + z * z);
+    return (x / a * atan(z / a) + z / b * atan(x / b)) / (2.0 * pi);
+}
+
+/* The form factor of a sheet of the sides `wide` from p, whose normal is +y. The sheet begins at
+   `at` and goes along `e` and `f`; or (a wall) along `f` and up, from below the horizon, so that of
+   each direction in which it stands all is seen. Triangles lack no more than the share 10 / wide.
+ */
+static double wide_factor(bool wall, const double at[3], const double e[3], const double f[3],
+                          const double p[3], double wide)
+{
+    const double way[3] = {at[0] - p[0], 0.0, at[2] - p[2]};
+    double x = double3_dot(way, e), z = double3_dot(way, f), h = at[1];
+    if (wall)
+        return (pi / 2.0 - atan(z / x)) / (2.0 * pi);
+    return corner_factor(wide, wide, h) - corner_factor(x, wide, h) - corner_factor(wide, z, h) +
+           corner_factor(x, z, h);
+}
+
+/* Emitters of which one corner is near and the others very far away, some below the horizon. */
+TEST(wide_emitters_keep_their_light)
+{
+    const double e[3] = {0.96, 0, 0.28}, f[3] = {-0.28, 0, 0.96}, widths[] = {1e7, 1e9, 1e12};
+    const double corners[2][3] = {{-0.4, 1.5, -0.3}, {3.5, -0.7, 0.4}};
+    for (int i = 0; i < 12; ++i) {
+        double wide = widths[i / 4], u[3], v[3] = {0, wide, 0};
+        bool wall = i & 2;
+        for (int k = 0; k < 3; ++k) {
+            u[k] = wide * f[k];
+            v[k] = wall ? v[k] : wide * e[k];
+        }
+        whit_renderer_params params = {
+            .width = SIDE, .height = SIDE, .shadows = WHIT_SHADOWS_NONE, .light_samples = 64};
+        struct scene *scene = floor_scene(eye_height);
+        scene_put_light(scene, emitter(i % 2 ? WHIT_LIGHT_TRIANGLE : WHIT_LIGHT_RECTANGLE,
+                                       corners[wall], u, v, 3.0f));
+        own_image image = color_of(scene, NULL, &params);
+        for (uint32_t k = 0; k < SIDE * SIDE; ++k) {
+            double p[3];
+            floor_point(k % SIDE, k / SIDE, SIDE, p);
+            double factor = wide_factor(wall, corners[wall], e, f, p, wide);
+            assert_near(image.pixels[4 * k], 3.0 * factor, 5e-6);
+        }
+    }
+}
+
 /* Seen from the middle of the floor, a plate hides exactly half of the emitter. With n points on
    the emitter, each stands for 1 / n of its light. */
 TEST_BY_TURNS(half_a_cover_takes_half, 1, 4)
