@@ -164,7 +164,9 @@ static void take_frame(struct view *view)
     if (other_scene)
         scenes_show(view);
     shaders_take(view);
-    if (!view->camera_known && settings_same_scene(&frame->settings, &view->settings))
+    /* A scene that is read again, or turned, may have other cameras. */
+    if ((!view->camera_known || (other_scene && view->file_camera >= 0)) &&
+        settings_same_scene(&frame->settings, &view->settings))
         view_learn_camera(view);
     count_picture(view);
     view->compare.stale = true;

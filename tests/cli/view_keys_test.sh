@@ -109,6 +109,14 @@ white: press Slash | keys.background = white | words has --background
 back: press Shift+7, press Shift+8, press Shift+Slash | words = --size 48x32
 END
 
+    # A model that is turned has another camera of whit's, from which the user goes on: its middle was at x = 5.
+    printf 'v %s\n' '4 -1 0' '6 -1 0' '5 1 0' >"$OUT/aside.obj"
+    echo 'f 1 2 3' >>"$OUT/aside.obj"
+    play "a turned model" "$OUT/aside.obj" --size 48x32 <<END
+start: | words = --size 48x32
+turned: press 7, still, press 1 | words has ,0,5,0,0,1,0, | words has --up x
+END
+
     play "bounces, samples, views" "$SCENES/balls.json" --size 48x32 <<END
 start: | keys.bounces = 8 | frame.view = color
 depth: press B | frame.view = depth | frame.ids as start
