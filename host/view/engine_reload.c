@@ -95,7 +95,13 @@ void engine_reload_note(struct engine *engine, struct engine_frame *before,
                         const struct settings *after, const struct difference *difference)
 {
     struct engine_reloading *reloading = &engine->reloading;
+    struct engine_reload *reload = &engine->status.reload;
     struct settings same = *after;
+    if (!before->ids && after->shader_reload > 0)
+        *reload = (struct engine_reload){.number = reload->number + 1,
+                                         .settings = *after,
+                                         .over = true,
+                                         .why = "no whole picture was shown before it"};
     same.shader_reload = before->settings.shader_reload;
     if (!before->ids || after->shader_reload <= before->settings.shader_reload ||
         !settings_same_shader(&same, &before->settings))
@@ -104,13 +110,12 @@ void engine_reload_note(struct engine *engine, struct engine_frame *before,
     reloading->turns.settings[0] = same;
     reloading->turns.settings[1] = *after;
     reloading->wanted = reloading->turns.stopped = false;
-    engine->status.reload = (struct engine_reload){
-        .number = engine->status.reload.number + 1, .settings = *after, .why = ""};
+    *reload = (struct engine_reload){.number = reload->number + 1, .settings = *after, .why = ""};
     if (!difference || !settings_same(&same, &before->settings))
         return;
-    engine->status.reload.compared = true;
-    engine->status.reload.has_colors = before->color && after->paint == PAINT_COLOR;
-    engine->status.reload.difference = *difference;
+    reload->compared = true;
+    reload->has_colors = before->color && after->paint == PAINT_COLOR;
+    reload->difference = *difference;
     reloading->before = *before;
     *before = (struct engine_frame){.settings = before->settings};
 }

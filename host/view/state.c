@@ -435,13 +435,13 @@ static bool is_nothing(const json_t *value)
 
 bool state_has(struct view *view, const char *condition)
 {
-    const char *equals = strstr(condition, " = ");
+    const char *equals = strstr(condition, " ="), *value = equals ? equals + 2 : "";
     json_t *root = condition_json(view, condition);
     const json_t *field =
         find_field(root, condition, equals ? (size_t)(equals - condition) : strlen(condition));
     char *dumped = json_dumps(field, JSON_ENCODE_ANY);
     const char *text = json_is_string(field) ? json_string_value(field) : dumped ? dumped : "";
-    bool has = equals ? strcmp(text, equals + 3) == 0 : !is_nothing(field);
+    bool has = equals ? strcmp(text, value + (*value == ' ')) == 0 : !is_nothing(field);
     free(dumped);
     json_decref(root);
     return has;

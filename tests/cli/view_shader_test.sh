@@ -46,7 +46,6 @@ check "five versions" test "$(printf '%s\n' "$green" "$blue" "$violet" "$red" "$
 printf 'vec3 tint(vec3 c) {\n    c.x = wrong;\n    c.y = here * here;\n    c.z = other;\n    c = far;\n    return c;\n}\n#include "deep.glsl"\n' \
     >broken.new
 printf '\nfloat deep = nowhere;\n\n' >live/part/deep.glsl
-NONE=
 # post TEXT, bomb: print a file whose post() has this text, or a text of 2^40 words by macros that double.
 post() { printf 'vec3 post(ivec2 at, vec3 color)\n{\n%s\n}\n' "$1"; }
 bomb() {
@@ -72,7 +71,7 @@ broken: press R | error has live/part/tint.glsl:2:11: 'wrong' | error has live/p
     | error has live/part/tint.glsl:4:11: 'other' | error has live/part/tint.glsl:5:9: 'far' | frame.pixels as red | frame.ids as start | shader.hash = $red
 turned: move 40 30, button left down, move 45 30, button left up | error as broken | frame.ids not as broken
 do put green.new live/part/tint.glsl
-until error = $NONE
+until error =
 until shader.changed
 mended: | shader.changed has ms [ | shader.changed has ids equal  preview | shader.refused = 1 | shader.hash = $green | frame.pixels not as turned | frame.ids as turned
 beside: press I | compare.mode = split | compare.other_ids = 0 | compare.other_colors > 100 | compare.b.pixels is frame.pixels of turned
@@ -91,7 +90,7 @@ do mv live/part live/away
 until error
 gone: | error has part/tint.glsl | frame.pixels as colour
 do mv live/away live/part
-until error = $NONE
+until error =
 back: | frame.pixels as colour | shader.hash = $violet
 END
     check "each error is said once" test "$(grep -cE 'error: live/part/(tint.glsl:(2:11|3|4:11|5:9)|deep.glsl:2:14): ' "$OUT/stderr")" -eq 5
@@ -199,7 +198,7 @@ do cp broken.new st/hook/miss.glsl
 until error
 broken: | error has st/hook/miss.glsl:$line: | frame.pixels as start
 do cp dim.new st/hook/new && mv st/hook/new st/hook/miss.glsl
-until error = $NONE
+until error =
 mended: | frame.pixels not as start | frame.ids as start
 END
 fi
@@ -282,7 +281,7 @@ do cp with.new real/l.glsl
 until error
 lacks: | error has new.glsl | render has --set k=
 do echo 'vec3 twice(vec3 c) { return 2.0 * c; }' >live/new.glsl
-until error = $NONE
+until error =
 mended: | frame.pixels not as start
 END
     check "a slider that is gone is not named" test "$(value mended render | grep -c -e --set)" -eq 0
@@ -354,7 +353,7 @@ END
         echo "until shader.refused = $told"
         echo "$name: | error has h.glsl | frame.pixels as start"
         echo "do echo // $name >>good.new && put good.new live/h.glsl"
-        echo "until error = $NONE"
+        echo "until error ="
         echo "after-$name: | error = | frame.pixels as start"
     done >>table
     play "each of many harmful saves, and a good one" cube.json --size 96x64 --shader live/h.glsl <table

@@ -31,18 +31,29 @@ static void ask(const char *text)
     engine_ask(engine, &settings, false);
 }
 
-static int begin(void **state)
+static int begin_saved(void **state, uint32_t times)
 {
     if (folder_begin(state) != 0)
         return -1;
     settings = settings_of("cube.json");
+    settings.shader_reload = times;
     snprintf(settings.shader, sizeof settings.shader, "%s/a.glsl", folder);
     const whit_log silent = {0};
     assert_int_equal(whit_shader_compiler_create(NULL, &silent, &compiler), WHIT_OK);
     save("vec3 post(ivec2 at, vec3 color) { return color; }\n");
     engine_begin(&(struct engine_params){.compiler = compiler});
-    assert_int_equal(status_now().reload.number, 0);
     return 0;
+}
+
+static int begin(void **state)
+{
+    return begin_saved(state, 0);
+}
+
+/* The file was saved before the first picture was whole. */
+static int begin_early(void **state)
+{
+    return begin_saved(state, 1);
 }
 
 static int end(void **state)
@@ -65,6 +76,7 @@ TEST_IN(a_save_is_measured_against_the_version_before, begin, end)
 {
     struct engine_frame before = frame;
     frame = (struct engine_frame){.number = before.number};
+    assert_int_equal(status_now().reload.number, 0);
     ask("vec3 post(ivec2 at, vec3 color) { return at.x == 40 ? vec3(0.5) : color; }\n");
     take_all();
     assert_false(status_now().reload.over); /* measuring was not asked for */
@@ -178,6 +190,20 @@ TEST_IN(measuring_gives_way, begin, end)
     assert_int_equal(reload.number, 2);
     assert_false(reload.compared || reload.has_flip);
     assert_true(reload.ms.count >= 6);
+}
+
+/* There is nothing to compare with, and that is told too. */
+TEST_IN(a_save_before_the_first_picture_is_told, begin_early, end)
+{
+    const struct engine_reload reload = status_now().reload;
+    assert_int_equal(reload.number, 1);
+    assert_true(reload.over && !reload.compared);
+    assert_int_equal(reload.settings.shader_reload, 1);
+    assert_string_equal(reload.why, "no whole picture was shown before it");
+    ask("vec3 post(ivec2 at, vec3 color) { return color.bgr; }\n");
+    take_all();
+    assert_int_equal(status_now().reload.number, 2);
+    assert_true(status_now().reload.compared && !status_now().reload.over);
 }
 
 TEST(what_a_save_changed_is_one_line)
