@@ -102,8 +102,8 @@ static void print_text(const whit_shader *shader, const char *path)
     whit_shader_get_info(shader, &info);
     const char *names[WHIT_HOOKS];
     uint32_t name_count = job_functions(&info, names);
-    printf("%s: %u file%s, functions", cli_shown(path), info.file_count,
-           info.file_count == 1 ? "" : "s");
+    printf("%s: %u file%s, %s", cli_shown(path), info.file_count, info.file_count == 1 ? "" : "s",
+           name_count ? "functions" : "tests alone");
     for (uint32_t i = 0; i < name_count; ++i)
         printf("%s %s", i ? "," : "", names[i]);
     printf("%s\n", info.traces ? "; they trace rays" : "");
