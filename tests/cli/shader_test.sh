@@ -186,6 +186,7 @@ void linked(uint seed) {
 }
 END
     expect 0 "what is linked" shader linked.glsl
+    check "it has nothing but tests" grep -qx 'linked.glsl: 1 file, tests alone' "$OUT/stdout"
     check "all of it" grep -q "test linked: passed, 7 checks of 4096 seeds" "$OUT/stdout"
     cat >zeros.glsl <<'END'
 struct Pair { float a; vec2 b; };
@@ -350,6 +351,22 @@ for example in "$EXAMPLES"/*.glsl; do
     run compare usual.png "$name.png" --metric flip --tolerance 0.001
     check "$name is no usual picture" test "$status" -eq 1
 done
+
+# The example path tracer brings the light of a lamp once: a floor on which nothing else shines is as bright as usual, and
+# so is one that also mirrors the lamp.
+if part 0 2; then
+    for floor in '"diffuse": 0.7' '"diffuse": 0.4, "reflection": 0.9'; do
+        cat >lamp.json <<END
+{ "camera": { "eye": [0, 2, 4], "target": [0, 0.6, 0], "fov": 45 }, "ambient": 0, "environment": [0, 0, 0],
+  "materials": { "floor": { $floor }, "lamp": { "diffuse": 0, "emission": 8 } },
+  "objects": [ { "shape": "plane", "size": [4, 4], "material": "floor" },
+    { "shape": "plane", "size": [1.2, 1.2], "rotation": [180, 0, 0], "translation": [0, 1.2, 0], "material": "lamp" } ] }
+END
+        expect 0 "a lamp" render lamp.json $SMALL --light-samples 4 --aa 16 -o a.pfm
+        expect 0 "by paths" render lamp.json $SMALL --light-samples 4 --aa 256 --shader "$EXAMPLES/paths.glsl" -o b.pfm
+        expect 0 "as bright ($floor)" compare a.pfm b.pfm --metric mean --tolerance 0.01
+    done
+fi
 
 # ---- Animation, adaptive samples, refinement, levels of numerics ----
 
