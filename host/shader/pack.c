@@ -35,6 +35,8 @@ static const char *refuse_part(const char *part, size_t length)
         return "a name without a name in it";
     if (part[0] == '.' && (length == 1 || (length == 2 && part[1] == '.')))
         return "a name that leads out of the folder";
+    if (part[0] == '.') /* programs obey some: git runs what a .git/config names */
+        return "a hidden name";
     if (is_device(part, length))
         return "the name of a device";
     return length > 255 ? "a name that is too long" : NULL;

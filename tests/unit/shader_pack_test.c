@@ -80,13 +80,14 @@ TEST(what_is_packed_comes_back)
 TEST(names_stay_below_their_folder)
 {
     static const char *const refused[] = {
-        "",      "/etc/passwd", "..",       "../a.glsl", "a/../../b", "a/..", ".",
-        "./a",   "a//b",        "a/",       "/",         "nul",       "CON",  "com1.glsl",
-        "Lpt9",  "part/aux.x",  "c:x",      "a\\b",      "a\nb",      "a|b",  "CONIN$",
-        "a/./b", "a\x7f",       "part/prn", "//a",       "a*",
+        "",     "/etc/passwd", "..",     "../a.glsl",  "a/../../b",   "a/..",
+        ".",    "./a",         "a//b",   "a/",         "/",           "nul",
+        "CON",  "com1.glsl",   "Lpt9",   "part/aux.x", "c:x",         "a\\b",
+        "a\nb", "a|b",         "CONIN$", "a/./b",      "a\x7f",       "part/prn",
+        "//a",  "a*",          ".a",     "..a",        ".git/config", "part/.a",
     };
-    static const char *const fine[] = {"a",     "a.glsl",       "part/a.glsl", "..a",
-                                       ".a",    "com.glsl",     "console",     "a b",
+    static const char *const fine[] = {"a",     "a.glsl",       "part/a.glsl", "a..",
+                                       "a.",    "com.glsl",     "console",     "a b",
                                        "com10", "\xc3\xa9.glsl"};
     const char *text = "x";
     for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
