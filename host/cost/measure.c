@@ -316,6 +316,16 @@ static void take_measured(const struct cost_report *report, struct cost_answer *
     }
 }
 
+/* Whether a measured row keeps the limit of time too, with a smaller error, and gives up nothing:
+   more samples may make a worse picture if they are no power of 4. */
+static bool is_outdone(const struct cost_report *report, const struct cost_answer *answer)
+{
+    struct cost_answer other = {.goal = answer->goal};
+    take_measured(report, &other);
+    return answer->goal.kind == COST_WITHIN &&
+           other.error < cost_error_left(report, &report->rows[answer->row], other.goal.metric);
+}
+
 /* Predicts settings for a goal and measures them. Where they exceed the limit, tries again with a
    narrower limit for the prediction. */
 static whit_result answer_goal(struct measure *measure, const struct cost_goal *goal)
@@ -347,7 +357,7 @@ static whit_result answer_goal(struct measure *measure, const struct cost_goal *
             break;
         aim.limit *= 0.8;
     }
-    if (result == WHIT_OK && !answer->kept)
+    if (result == WHIT_OK && (!answer->kept || is_outdone(report, answer)))
         take_measured(report, answer);
     return result;
 }

@@ -73,6 +73,11 @@ check "4 samples take 4 times as long" test "$(value "$C" aa 4 ratio)" = 4
 check "that is more" test "$(value "$C" aa 4 verdict)" = 1
 check "bounces that take as long are not told apart" \
     test "$(value "$C" depth 16 ratio)$(value "$C" depth 16 verdict)" = 10
+expect 0 "time for 5 samples" cost "$GLASS" $small --reference-samples 16 --rays 0 --knobs aa --metric rmse --within 700 \
+    --json "$OUT/files/five.json"
+check "4 samples are taken, whose measured error is smaller" jq -e '. as $all | .answers[0] | .kept and
+    $all.rows[.row].setting == "4" and $all.rows[-1].option == "--aa 5" and
+    $all.rows[-1].error.rmse > .predicted_error' "$OUT/files/five.json"
 one=$(value "$C" usual "" rmse) four=$(value "$C" aa 4 rmse) all=$(value "$C" aa 16 rmse)
 check "error falls with samples ($one $four $all)" \
     holds "$one > 1.5 * $four && 1.5 * $four > 3 * $all"
