@@ -84,6 +84,24 @@ refuse 2 "a picture without any" "without .whit:shader." shader extract plain.pn
 refuse 2 "no picture" "" shader extract my/a.glsl
 check "nothing is left beside" test "$(find . -name '.*' ! -name . | wc -l)" -eq 0
 
+# A picture with two texts of functions: those that are shown are those that are compiled and extracted.
+echo 'vec3 post(ivec2 at, vec3 color) { return color.bgr * 0.25; }' >other.glsl
+expect 0 "other functions" render scenes/cube.json --size 40x30 --quiet --shader other.glsl -o other.png
+at() { LC_ALL=C grep -abo "$1" "$2" | head -1 | cut -d : -f 1; }
+text=$(at tEXtwhit:shader other.png)
+bytes=$(od -An -tu1 -j $((text - 4)) -N 4 other.png | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 + 12 }')
+{
+    head -c $(($(at IDAT a.png) - 4)) a.png
+    tail -c +$((text - 3)) other.png | head -c "$bytes"
+    tail -c +$(($(at IDAT a.png) - 3)) a.png
+} >twice.png
+expect 0 "two texts" render twice.png --yes -o again.png
+check "the first one is shown" sh -c 'grep -q "functions  a.glsl" "$1" && ! grep -q other.glsl "$1"' - "$OUT/stderr"
+expect 0 "and compiled" compare a.png again.png --metric differing --tolerance 0
+expect 0 "and extracted" shader extract twice.png
+check "alone" test "$(ls twice)" = "a.glsl
+part"
+
 # ---- Options and scenes that no picture may set ----
 
 # forge FROM TO: makes bad.exr of a.exr, with TO in the place of FROM in its recipe, padded to the same length.
