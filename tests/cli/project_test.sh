@@ -55,6 +55,8 @@ rm -f no.png
 expect 2 "no terminal" render a.png --quiet -o no.png </dev/null
 said "politely" "no terminal to ask at; --yes says yes"
 check "no picture" test ! -e no.png
+echo 'vec3 post(ivec2 at, vec3 color) { return color.bgr; }' >other.glsl
+expect 0 "other functions" render scenes/cube.json --size 40x30 --quiet --shader other.glsl -o other.png
 if command -v script >/dev/null; then
     for answer in y n; do
         echo $answer | script -qec "$WHIT render a.png -o $answer.png" /dev/null >"$OUT/asked"
@@ -62,6 +64,16 @@ if command -v script >/dev/null; then
     done
     check "yes draws" test -e y.png
     check "no draws nothing" test ! -e n.png
+    # A picture that is replaced by another one while the question stands is not drawn.
+    cp a.png swapped.png
+    : >"$OUT/asked"
+    {
+        until grep -q 'Load and compile it' "$OUT/asked"; do sleep 0.1; done
+        cp other.png swapped.png
+        echo y
+    } | script -qec "$WHIT render swapped.png -o no.png" /dev/null >>"$OUT/asked"
+    check "says so" grep -q 'swapped.png: its functions are others than those that were shown' "$OUT/asked"
+    check "draws nothing" test ! -e no.png
 fi
 
 # ---- Files ----
@@ -85,8 +97,6 @@ refuse 2 "no picture" "" shader extract my/a.glsl
 check "nothing is left beside" test "$(find . -name '.*' ! -name . | wc -l)" -eq 0
 
 # A picture with two texts of functions: those that are shown are those that are compiled and extracted.
-echo 'vec3 post(ivec2 at, vec3 color) { return color.bgr * 0.25; }' >other.glsl
-expect 0 "other functions" render scenes/cube.json --size 40x30 --quiet --shader other.glsl -o other.png
 at() { LC_ALL=C grep -abo "$1" "$2" | head -1 | cut -d : -f 1; }
 text=$(at tEXtwhit:shader other.png)
 bytes=$(od -An -tu1 -j $((text - 4)) -N 4 other.png | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 + 12 }')

@@ -184,6 +184,24 @@ static bool ask(const struct recipe_read *recipe)
     return yes;
 }
 
+/* Whether the functions that the picture carries are still those that were shown: to be compiled,
+   they are read again. */
+static bool is_as_shown(const struct recipe_read *recipe, const struct settings *settings)
+{
+    const char *folders[SETTING_FOLDERS_MAX];
+    const whit_load_params params = settings_load(settings, folders);
+    const char *shown = text_value(recipe->texts, recipe->text_count, WHIT_SHADER_KEY);
+    whit_text *texts;
+    uint32_t count;
+    if (whit_image_load_texts(recipe->picture, &params, &cli_log, &texts, &count) != WHIT_OK)
+        return false;
+    const char *now = text_value(texts, count, WHIT_SHADER_KEY);
+    bool same = now && strcmp(now, shown) == 0;
+    whit_memory_destroy(texts);
+    return same || CLI_FAIL(false, "%s: its functions are others than those that were shown",
+                            recipe->picture);
+}
+
 static bool confirm(const struct recipe_read *recipe, const struct settings *settings, bool yes)
 {
     whit_shader_file *files = NULL;
@@ -195,7 +213,7 @@ static bool confirm(const struct recipe_read *recipe, const struct settings *set
     if (!yes || !settings->quiet)
         tell(recipe, settings, files, count);
     whit_memory_destroy(files);
-    return yes || ask(recipe);
+    return yes || (ask(recipe) && (count == 0 || is_as_shown(recipe, settings)));
 }
 
 /* ---- All of it ---- */
