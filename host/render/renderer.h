@@ -85,6 +85,7 @@ enum stage {
     STAGE_CLOSEST,
     STAGE_SHADE,
     STAGE_SHADE_GLASS,
+    STAGE_SHADE_DIRECT, /* as STAGE_SHADE, and what the shadow stages add to its hits */
     STAGE_SHADOW,
     STAGE_SHADOW_LATER,
     STAGE_RESOLVE, /* generation 0: the sums go into the pixels */
@@ -109,6 +110,7 @@ struct stage_set {
     uint32_t lights_each;            /* lights of a dispatch: SPEC_LIGHTS_EACH, or 1 */
     bool calls[CLASSES_MAX];         /* whether hits of a class send further rays */
     bool asks;                       /* whether hits go on to the shadow stages */
+    bool asks_directly;              /* the same of those of STAGE_SHADE_DIRECT and glass */
 };
 
 /* Times of the stages of the tile that is being drawn, see stage_times.c. */
@@ -133,6 +135,7 @@ struct stages {
     bool full;               /* a queue overflowed in the last submission */
     bool may_cut;            /* loops that are cut short are no error: the tile is drawn again */
     bool cut;                /* with may_cut: loops were cut short in the last submission */
+    bool no_direct;          /* STAGE_SHADE_DIRECT is not used, since its loops were cut short */
     uint64_t *material_hits; /* by class and material, in timed tiles; NULL: none yet */
     /* Blocks that a tile may have, since a larger one overflowed a queue; 0: as many as fit. */
     uint32_t blocks_max;

@@ -34,13 +34,19 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
        stages. */
     job->asks = !shader_has(shader, WHIT_HOOK_SHADE) || spec->SPEC_CATCHERS;
     job->classes = own ? variant_classes(target) : 1;
+    bool direct = own && !few && variant_lights_directly(target, spec, job->classes);
+    job->asks_directly = job->asks && (job->classes > 1 || spec->SPEC_NUMERICS == NUMERICS_EXACT);
+    /* Timed tiles are shaded without it, so that each light has its time. */
+    bool apart = !direct || renderer->params.time_stages;
+    bool asks = job->asks && (apart || job->asks_directly);
     bool splits = variant_splits_hits(target);
     for (int i = 0; i < STAGE_COUNT; ++i) {
         job->of[i] = (enum stage)i;
         bool shadow = i == STAGE_SHADOW || i == STAGE_SHADOW_LATER;
         bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
         bool part = i == STAGE_HIT_FETCH || i == STAGE_HIT_CALL;
-        job->wanted[i] = (!shadow || job->asks) && (!later || renderer->has_secondary) &&
+        job->wanted[i] = (!shadow || asks) && (!later || renderer->has_secondary) &&
+                         (i != STAGE_SHADE || apart) && (i != STAGE_SHADE_DIRECT || direct) &&
                          (!part || splits) && (i != STAGE_HIT || !splits) &&
                          (i != STAGE_MISS || shader_has(shader, WHIT_HOOK_MISS)) &&
                          (i != STAGE_SHAPE || shader_has(shader, WHIT_HOOK_INTERSECT)) &&
@@ -49,7 +55,7 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
                          (i != STAGE_AOV || spec->SPEC_AOVS > 0) &&
                          (i != STAGE_POST || shader_has(shader, WHIT_HOOK_POST)) &&
                          (i != STAGE_SHADE_GLASS || job->classes == CLASSES_MAX);
-        if (job->wanted[i])
+        if (job->wanted[i] || i == STAGE_SHADE)
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
     }
     /* Without packets, the shadow rays of all generations have the same code. */
@@ -83,6 +89,7 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
     whit_result result = WHIT_OK;
     *out = (struct stage_set){.classes = job->classes,
                               .asks = job->asks,
+                              .asks_directly = job->asks_directly,
                               .hit_rows = variant_hit_rows(&job->spec),
                               .lights_each = job->spec.SPEC_LIGHTS_EACH};
     memcpy(out->of, job->of, sizeof out->of);
@@ -232,29 +239,38 @@ whit_result stages_replace(struct target *target, const whit_shader *before)
     return WHIT_OK;
 }
 
-/* Makes the kernel of shade() for which the two parts have stood in. */
-static whit_result make_hits(struct target *target)
+/* Makes the kernels that the set lacks. The kernel of shade() takes the place of its two parts. */
+static whit_result make_missing(struct target *target)
 {
     struct stage_set *set = &target->stages.set, made;
     struct gpu_spec spec = variant_spec(target);
     struct stages_job job;
     stages_job_init(target, &spec, true, variant_few_kernels(target), &job);
     for (int i = 0; i < STAGE_COUNT; ++i)
-        job.wanted[i] = i == STAGE_HIT;
+        job.wanted[i] = job.wanted[i] && !set->passes[i].pipeline;
     whit_result result = stages_job_run(target->renderer->device, &job, &made);
     if (result != WHIT_OK)
         return result;
     stages_unbind(&target->stages);
-    set->passes[STAGE_HIT] = made.passes[STAGE_HIT];
-    pass_finish(&set->passes[STAGE_HIT_CALL]);
+    for (int i = 0; i < STAGE_COUNT; ++i) {
+        if (job.wanted[i])
+            set->passes[i] = made.passes[i];
+    }
+    memcpy(set->of, made.of, sizeof set->of);
+    if (set->passes[STAGE_HIT].pipeline)
+        pass_finish(&set->passes[STAGE_HIT_CALL]);
+    target->stages.times.tiles = 0; /* the first tile makes machine code, and is not timed */
     count_instructions(target);
     return WHIT_OK;
 }
 
 whit_result stages_complete(struct target *target)
 {
-    bool parts = target->stages.set.passes[STAGE_HIT_CALL].pipeline;
-    whit_result result = parts && !variant_splits_hits(target) ? make_hits(target) : WHIT_OK;
+    const struct pass *passes = target->stages.set.passes;
+    bool parts = passes[STAGE_HIT_CALL].pipeline && !variant_splits_hits(target);
+    bool apart = (target->renderer->params.time_stages || target->stages.no_direct) &&
+                 passes[STAGE_SHADE_DIRECT].pipeline && !passes[STAGE_SHADE].pipeline;
+    whit_result result = parts || apart ? make_missing(target) : WHIT_OK;
     return result == WHIT_OK ? stages_bind(target) : result;
 }
 

@@ -9,7 +9,7 @@
 struct stages_job {
     struct gpu_spec spec;
     uint32_t classes;
-    bool asks;                  /* as in struct stage_set */
+    bool asks, asks_directly;   /* as in struct stage_set */
     bool wanted[STAGE_COUNT];   /* whether the stage gets a kernel of its own */
     enum stage of[STAGE_COUNT]; /* as in struct stage_set */
     struct variant_job stages[STAGE_COUNT];
@@ -31,8 +31,9 @@ WHIT_CHECK whit_result stages_compile(struct target *target);
    driver would use one core and its cache has none of this code. Errors are the device's. After a
    request to stop, the remaining kernels are translated when they are dispatched. */
 WHIT_CHECK whit_result translation_share(struct target *target, const struct stages_job *job);
-/* Makes the kernel that was put off for params.few_pixels once that is no longer set, and binds the
-   set, which must exist. */
+/* Makes the kernels that were put off for params.few_pixels once that is no longer set, and those
+   that take the place of STAGE_SHADE_DIRECT once they are needed; binds the set, which must exist.
+ */
 WHIT_CHECK whit_result stages_complete(struct target *target);
 /* Binds the set to the current buffers, if it is not bound. */
 WHIT_CHECK whit_result stages_bind(struct target *target);

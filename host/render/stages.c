@@ -48,17 +48,12 @@ static size_t list_offset(uint32_t list)
 static uint32_t row_of(enum stage stage, uint32_t list)
 {
     static const uint32_t rows[STAGE_COUNT] = {
-        [STAGE_CAMERA] = RENDER_STAGE_CAMERA,
-        [STAGE_MISS] = RENDER_STAGE_CAMERA,
-        [STAGE_CLOSEST] = RENDER_STAGE_CLOSEST,
-        [STAGE_SHADE] = RENDER_STAGE_SHADE,
-        [STAGE_SHADOW] = RENDER_STAGE_SHADOW,
-        [STAGE_SHADE_GLASS] = RENDER_STAGE_SHADE_GLASS,
-        [STAGE_SHADOW_LATER] = RENDER_STAGE_SHADOW,
-        [STAGE_RESOLVE] = RENDER_STAGE_RESOLVE,
-        [STAGE_RESOLVE_LATER] = RENDER_STAGE_RESOLVE,
-        [STAGE_SHAPE] = RENDER_STAGE_CAMERA,
-        [STAGE_POST] = RENDER_STAGE_RESOLVE,
+        [STAGE_CAMERA] = RENDER_STAGE_CAMERA,      [STAGE_MISS] = RENDER_STAGE_CAMERA,
+        [STAGE_CLOSEST] = RENDER_STAGE_CLOSEST,    [STAGE_SHADE] = RENDER_STAGE_SHADE,
+        [STAGE_SHADOW] = RENDER_STAGE_SHADOW,      [STAGE_SHADE_GLASS] = RENDER_STAGE_SHADE_GLASS,
+        [STAGE_SHADE_DIRECT] = RENDER_STAGE_SHADE, [STAGE_SHADOW_LATER] = RENDER_STAGE_SHADOW,
+        [STAGE_RESOLVE] = RENDER_STAGE_RESOLVE,    [STAGE_RESOLVE_LATER] = RENDER_STAGE_RESOLVE,
+        [STAGE_SHAPE] = RENDER_STAGE_CAMERA,       [STAGE_POST] = RENDER_STAGE_RESOLVE,
     };
     if (stage == STAGE_SHAPE && list != LIST_RAYS)
         stage = STAGE_SHADOW;
@@ -79,11 +74,26 @@ static whit_result begin_submission(struct tile_run *run)
     return WHIT_OK;
 }
 
+static bool has_direct(const struct target *target)
+{
+    return target->stages.set.passes[STAGE_SHADE_DIRECT].pipeline && !target->stages.no_direct;
+}
+
+/* Whether STAGE_SHADE_DIRECT shades the tile. Where stages are timed, it does not shade timed
+   tiles, so that each light has its time, and the first tile, which makes machine code. */
+static bool lights_directly(const struct tile_run *run)
+{
+    const struct target *target = run->target;
+    const struct stage_times *times = &target->stages.times;
+    bool timed = target->renderer->params.time_stages && (times->on || times->tiles <= 1);
+    return has_direct(target) && !timed;
+}
+
 static whit_result finish_submission(struct tile_run *run)
 {
     double start_ms = clock_ms();
     struct stages *stages = &run->target->stages;
-    stages->may_cut = stages->set.lights_each > 1;
+    stages->may_cut = stages->set.lights_each > 1 || has_direct(run->target);
     whit_result result = render_finish_submission(run->target);
     stages->may_cut = false;
     stage_times_take(run->target);
@@ -196,7 +206,7 @@ static whit_result record_hits(struct tile_run *run)
     if (result == WHIT_OK && run->chunk.generation == 0)
         result = record_own_hits(run, STAGE_AOV);
     if (result == WHIT_OK)
-        result = dispatch(run, STAGE_SHADE, LIST_HITS);
+        result = dispatch(run, lights_directly(run) ? STAGE_SHADE_DIRECT : STAGE_SHADE, LIST_HITS);
     if (result == WHIT_OK && run->target->stages.set.classes > 1)
         result = dispatch(run, STAGE_SHADE_GLASS, LIST_HITS + CLASS_GLASS);
     return result;
@@ -208,8 +218,10 @@ static whit_result record_lights(struct tile_run *run)
     bool camera = run->chunk.generation == 0, by_light = renderer->frame.light_count <= LIGHT_LISTS;
     bool shadows = renderer_compiles(renderer, SCENE_EFFECT_SHADOWS);
     whit_result result = WHIT_OK;
-    uint32_t lights = run->target->stages.set.asks ? renderer->frame.light_count : 0;
-    uint32_t each = by_light ? 1 : run->target->stages.set.lights_each;
+    const struct stage_set *set = &run->target->stages.set;
+    bool asks = lights_directly(run) ? set->asks_directly : set->asks;
+    uint32_t lights = asks ? renderer->frame.light_count : 0;
+    uint32_t each = by_light ? 1 : set->lights_each;
     for (uint32_t i = 0; result == WHIT_OK && i < lights; i += each) {
         uint32_t list = LIST_LIGHTS + (by_light ? i : 0);
         run->chunk.light = i;
@@ -384,14 +396,18 @@ static whit_result draw_tile(struct target *target, const struct gpu_chunk *tile
 }
 
 /* If loops are cut short that several lights share, the tile is drawn again, and from then on each
-   light has its own dispatch. If a queue overflows, the tile is drawn again in halves. */
+   light has its own dispatch, and no light is added while shading. If a queue overflows, the tile
+   is drawn again in halves. */
 whit_result stages_sample(struct target *target, const struct gpu_chunk *chunk,
                           const struct progress *progress, double *longest_ms)
 {
     whit_result result = draw_tile(target, chunk, progress, longest_ms);
     if (result == WHIT_OK && target->stages.cut) {
         target->stages.set.lights_each = 1;
-        result = draw_tile(target, chunk, progress, longest_ms);
+        target->stages.no_direct = true;
+        result = stages_complete(target);
+        if (result == WHIT_OK)
+            result = draw_tile(target, chunk, progress, longest_ms);
     }
     if (result != WHIT_OK || !target->stages.full)
         return result;

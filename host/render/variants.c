@@ -314,7 +314,8 @@ static struct bindings bind_stages(const struct target *target)
 bool variant_defers(const struct pipeline_params *params, struct gpu_spec *spec)
 {
     memcpy(spec, params->spec, sizeof *spec);
-    if (spec->SPEC_SETTLES)
+    if (spec->SPEC_SETTLES ||
+        spec->SPEC_DIRECT) /* that one leaves such rays to the shadow stages */
         return false;
     spec->SPEC_SETTLES = 1;
     spec->SPEC_GROUP_SIZE = spec->SPEC_DEFERRED_GROUP;
@@ -379,6 +380,25 @@ uint32_t variant_classes(const struct target *target)
                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_OPAQUE, &none) > 0 &&
                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_GLASS, &none) > 0;
     return both ? CLASSES_MAX : 1;
+}
+
+/* Shadow rays of glass, and of many lights, would leave most lanes of their subgroup idle. Rays
+   that read textures or pass cut-outs need more of the scene than the kernel of a class knows. */
+bool variant_lights_directly(const struct target *target, const struct gpu_spec *spec,
+                             uint32_t classes)
+{
+    enum { LIGHTS_MAX = 4 };
+    const struct renderer *renderer = target->renderer;
+    struct scene_effects none = {.called = {false}};
+    bool plain = classes > 1 ||
+                 scene_effects_scan_materials(renderer->scene, SCENE_MATERIALS_GLASS, &none) == 0;
+    bool patterned = spec->SPEC_FILTERS && spec->SPEC_FILTER_DETAIL == FILTERS_PATTERNED;
+    return device_get_info(renderer->device)->kind == WHIT_DEVICE_CPU && plain &&
+           !renderer->packets && !target->stages.no_direct && !target->probed &&
+           !spec->SPEC_COUNT && !spec->SPEC_CATCHERS && !spec->SPEC_CUTOUTS && !patterned &&
+           !renderer->params.shader && !renderer->params.all_effects &&
+           !renderer->accel->no_trees && spec->SPEC_SHADOWS && spec->SPEC_LIGHTS &&
+           !(spec->SPEC_LIGHTS & LIGHT_FLAT_BITS) && renderer->pose.light_count <= LIGHTS_MAX;
 }
 
 bool variant_calls_rays(const struct gpu_spec *spec)
@@ -478,11 +498,11 @@ static void narrow_to_functions(const struct target *target, struct gpu_spec *sp
         spec->SPEC_VERTEX_COLORS = 0;
 }
 
-/* Whether shading traces rays: to surfaces in contact, or where a user's functions do. If not, its
-   code is the same at all levels of numerics. */
+/* Whether shading traces rays: to surfaces in contact, to lights, or where a user's functions do.
+   If not, its code is the same at all levels of numerics. */
 static bool shading_traces(const struct target *target, const struct gpu_spec *spec)
 {
-    return spec->SPEC_MEDIA == MEDIA_TOUCH || spec->SPEC_PROBE ||
+    return spec->SPEC_MEDIA == MEDIA_TOUCH || spec->SPEC_PROBE || spec->SPEC_DIRECT ||
            hooks_code(target, kernels[KERNEL_SHADE].name);
 }
 
@@ -500,6 +520,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
         [STAGE_CLOSEST] = {&kernels[KERNEL_CLOSEST], "closest", true, 2},
         [STAGE_SHADE] = {&kernels[KERNEL_SHADE], "shade", true, 3},
         [STAGE_SHADE_GLASS] = {&kernels[KERNEL_SHADE], "shade glass", true, 3},
+        [STAGE_SHADE_DIRECT] = {&kernels[KERNEL_SHADE], "shade and light", true, 3},
         [STAGE_SHADOW] = {&kernels[KERNEL_SHADOW], "shadow", true, 1},
         [STAGE_SHADOW_LATER] = {&kernels[KERNEL_SHADOW], "shadow later", true, 2},
         [STAGE_RESOLVE] = {&kernels[KERNEL_RESOLVE], "resolve", false, 1},
@@ -517,6 +538,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     struct gpu_spec *spec = &job->spec;
     memcpy(job->kinds, bindings.kinds, sizeof job->kinds);
     spec->SPEC_SETTLES |= !stages[stage].deferred;
+    spec->SPEC_DIRECT = stage == STAGE_SHADE_DIRECT;
     if (stages[stage].kernel == &kernels[KERNEL_SHADE] && !shading_traces(target, spec)) {
         spec->SPEC_NUMERICS = NUMERICS_WATERTIGHT;
         spec->SPEC_SETTLES = 1;
@@ -531,6 +553,8 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     if (classes > 1 && stages[stage].kernel == &kernels[KERNEL_SHADE])
         effects_narrow_to_class(renderer, stage == STAGE_SHADE_GLASS ? CLASS_GLASS : CLASS_PLAIN,
                                 spec);
+    if (spec->SPEC_DIRECT) /* its shadow rays meet the primitives of both classes */
+        spec->SPEC_SPHERES = set_spec->SPEC_SPHERES;
     if (stage == STAGE_HIT || stage == STAGE_HIT_CALL)
         narrow_to_functions(target, spec);
     spec->SPEC_HIT_PART = stage == STAGE_HIT_FETCH  ? HIT_PART_FETCH

@@ -19,6 +19,10 @@ struct gpu_spec variant_async_spec(const struct target *target);
 uint32_t variant_classes(const struct target *target);
 /* Whether one kernel serves several stages and all materials: renderer->few_kernels, or a probe. */
 bool variant_few_kernels(const struct target *target);
+/* Whether STAGE_SHADE_DIRECT pays, in a set of kernels with `spec` and as many classes: where
+   shadow rays go one by one, and most hits have one for each light. */
+bool variant_lights_directly(const struct target *target, const struct gpu_spec *spec,
+                             uint32_t classes);
 /* Whether the shading kernel with `spec` sends rays on, as CALLS_RAYS of bind/queues.glsl. */
 bool variant_calls_rays(const struct gpu_spec *spec);
 /* Whether rays whose hits floats leave open are deferred to a second dispatch: at NUMERICS_EXACT,

@@ -145,11 +145,11 @@ uint reaching_lights(Lit lit)
     return reaching;
 }
 
-// Stores a lit hit, and appends it to the list of each light that may reach it.
-void list_lit(bool wanted, Lit lit, inout uint status)
+// Stores a lit hit, and appends it to the list of each of `lights` (bit i: light i) that may reach it.
+void list_lit(bool wanted, uint lights, Lit lit, inout uint status)
 {
     uint g = chunk.generation, lists = list_of_light(frame.light_count - 1u) + 1u, i = 0u;
-    uint reaching = frame.light_count <= LIGHT_LISTS ? reaching_lights(lit) : 1u;
+    uint reaching = frame.light_count <= LIGHT_LISTS ? reaching_lights(lit) & lights : 1u;
     wanted = wanted && reaching != 0u;
     uint index = append_items(g, LIST_LIT, uint(wanted), SPEC_LIST_GROUP);
     uint room = SPEC_SEGMENTS == 2u ? chunk.lit_capacity / 2u : chunk.lit_capacity;

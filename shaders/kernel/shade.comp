@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "../bind/stage.glsl"
 #include "../bind/queues.glsl"
+#include "../bind/arrival.glsl"
 #include "../bind/crossing.glsl"
 #include "../bind/hook.glsl"
 #include "../bind/lit_surface.glsl"
@@ -213,16 +214,41 @@ void count_cut(uint slot, Calls calls)
     atomicAdd(cuts[slot * 2u + uint(!calls.deep)], uint(min(calls.cut, 64.0) * CUT_PARTS + 0.5));
 }
 
-void ask_lights(bool alive, uint id, Met met, Optics o, bool catcher, inout uint status)
+Lit lit_hit(uint id, Met met, Optics o, bool catcher)
 {
     vec3 weight = catcher ? vec3(1.0) : met.ray.weight * (1.0 - o.straight);
     Lit lit = lit_surface(met.s, o, weight, met.c.before);
     lit.flags |= catcher ? LIT_CATCHER : 0u;
     lit.id = id;
     lit.record = met.hit.triangle;
-    bool some = largest_of(lit.diffuse + lit.highlight) > 0.0 ||
-                any(isnan(lit.diffuse + lit.highlight));
-    list_lit(alive && some, lit, status);
+    lit.view = -met.ray.dir;
+    lit.skip_instance = met.hit.instance;
+    lit.skip_primitive = met.hit.primitive;
+    return lit;
+}
+
+// With SPEC_DIRECT: adds the light of all lights to `sum`, one after the other as the shadow stages
+// do. Returns which lights are left to these, as bits: at NUMERICS_EXACT, the first one whose shadow
+// ray is to be deferred, and those behind it.
+uint add_direct_light(bool wanted, Lit lit, inout vec3 sum, inout uint status)
+{
+    uint left = 0u, i = 0u;
+    do {
+        gpu_light light = fetch_light(i);
+        Arrival a = arrive(wanted && left == 0u, lit, light, 0u);
+        Hit blocker = traverse(TRAVERSE_SHADOW, lit.origin, a.dir, 0.0, a.distance,
+                               a.wanted ? frame.root : REF_DONE, lit.skip_instance,
+                               a.above ? lit.skip_primitive : HIT_NONE);
+        bool waits = a.wanted && must_wait(blocker.status), done = a.wanted && !waits;
+        left = waits ? 0xffffffffu << i : left;
+        sum += done ? a.reflected * a.arriving * passing_share(blocker, lit.absorption) : vec3(0.0);
+        status |= done ? blocker.status : 0u;
+        uint rays = add_up_lanes(uint(done));
+        if (is_first_lane() && rays != 0u)
+            atomicAdd(generations[chunk.generation].lists[LIST_LIGHTS + i].shadow_rays, rays);
+        i++;
+    } while (another_iteration(i < frame.light_count));
+    return left;
 }
 
 // The light that the surface sends without that of lights; with a user's shade() all of its light.
@@ -284,16 +310,28 @@ void main()
     bool some = has != 0u;
     has |= catcher && some ? SUM_IS_CATCHER : 0u;
     emitted = calls.lost ? vec3(uintBitsToFloat(0x7fc00000u)) : emitted;
-    if (alive)
-        store_sum(id, calls.lost || (seen && !catcher) ? emitted : vec3(0.0), has);
+    vec3 sum = calls.lost || (seen && !catcher) ? emitted : vec3(0.0);
+    if (SPEC_DIRECT == 0u && alive)
+        store_sum(id, sum, has);
     if (CALLS_RAYS && alive && calls.cut > 0.0)
         count_cut(met.slot, calls);
     if (alive && catcher)
         store_hit_row(id * HIT_ROWS, uvec4(0u));
     bool has_asked = (SPEC_HOOKS & HOOK_SHADE) != 0u; // by shade(), except for shadow catchers
     seen = has_asked ? catcher : seen;
-    if (SPEC_LIGHTS != 0u && (SPEC_CATCHERS != 0u || (SPEC_HOOKS & HOOK_SHADE) == 0u))
-        ask_lights(alive && seen && !o.unlit && (!catcher || some), id, met, o, catcher, status);
+    if (SPEC_LIGHTS != 0u && (SPEC_CATCHERS != 0u || (SPEC_HOOKS & HOOK_SHADE) == 0u)) {
+        Lit lit = lit_hit(id, met, o, catcher);
+        vec3 reflects = lit.diffuse + lit.highlight;
+        bool asks = alive && seen && !o.unlit && (!catcher || some) &&
+                    (largest_of(reflects) > 0.0 || any(isnan(reflects)));
+        uint lights = 0xffffffffu;
+        if (SPEC_DIRECT != 0u)
+            lights = add_direct_light(asks, lit, sum, status);
+        if (SPEC_DIRECT == 0u || has_bounds_alone())
+            list_lit(asks, lights, lit, status);
+    }
+    if (SPEC_DIRECT != 0u && alive)
+        store_sum(id, sum, has);
     report_status(alive ? status : 0u);
 #ifdef HOOKS
     if (alive)

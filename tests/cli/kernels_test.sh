@@ -15,10 +15,11 @@ check "one for all materials, and for all generations" \
 expect 0 "as JSON" scene "$W" --kernels --size 480x320 --json
 check "all stages of whitted, with one kernel for all shadow rays, which go without packets" \
     test "$(jq -r '[.kernels[].name] | join(", ")' "$OUT/stdout")" = \
-    "camera, closest, shade, shade glass, shadow later, resolve, resolve later"
+    "camera, closest, shade glass, shade and light, shadow later, resolve, resolve later"
 check "each was made" jq -e 'all(.kernels[]; .instructions > 100 and .create_ms > 0)' "$OUT/stdout"
+expect 0 "with packets" scene "$SCENES/34k.json" --kernels --size 480x320 --json
 sum=$(jq '[.kernels[].instructions] | add' "$OUT/stdout")
-shows "the picture" "^  $sum of " render "$W" -o "$OUT/w.pfm" --size 480x320 --stats text --quiet
+shows "the picture" "^  $sum of " render "$SCENES/34k.json" -o "$OUT/w.pfm" --size 480x320 --stats text --quiet
 expect 0 "as text" scene "$CUBE" --kernels --size 64x48
 check "cube calls for no second generation" test "$(grep -c 'to make$' "$OUT/stdout")" -eq 4
 expect 0 "exact" scene "$CUBE" --kernels --numerics exact --size 64x48

@@ -96,6 +96,12 @@ mutation(lights_in_another_order render_light RED many_lights_are_added_in_their
 change(shaders/kernel/shadow.comp [[fetch_light(light_index);]]
   [[fetch_light(end - 1u - (light_index - chunk.light));]])
 
+mutation(undecided_rays_not_left render_direct RED pictures_are_those_of_shadow_stages)
+change(shaders/kernel/shade.comp [[left = waits ? 0xffffffffu << i : left;]] [[;]])
+
+mutation(direct_light_blind render_direct RED pictures_are_those_of_shadow_stages)
+change(host/render/variants.c [[spec->SPEC_SPHERES = set_spec->SPEC_SPHERES;]] [[(void)set_spec;]])
+
 mutation(class_too_poor render_effects RED only_pixels_that_see_glass_refract)
 change(host/render/effects.c [[glass ? SCENE_MATERIALS_GLASS : SCENE_MATERIALS_OPAQUE]]
   [[glass ? SCENE_MATERIALS_OPAQUE : SCENE_MATERIALS_GLASS]])
