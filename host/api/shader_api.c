@@ -3,6 +3,7 @@
 
 #include "api/handles.h"
 #include "base/path.h"
+#include "base/text.h"
 #include "image/image_reply.h"
 #include "shader/disassemble.h"
 #include "shader/pack.h"
@@ -77,12 +78,10 @@ static whit_result read_picture(whit_shader_compiler *compiler, const char *path
     whit_text *texts;
     struct shader_pack pack;
     uint32_t count;
-    const char *packed = NULL;
     whit_result result = image_load_texts(&compiler->log, path, &foreign, &texts, &count);
     if (result != WHIT_OK)
         return result;
-    for (uint32_t i = 0; i < count; ++i)
-        packed = strcmp(texts[i].key, WHIT_SHADER_KEY) == 0 ? texts[i].value : packed;
+    const char *packed = text_value(texts, count, WHIT_SHADER_KEY);
     if (packed) {
         result = shader_pack_read(&compiler->log, path, packed, &pack);
     } else {

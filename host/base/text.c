@@ -214,3 +214,12 @@ const char *text_nearest(const char *word, const char *const *names, uint32_t co
     }
     return nearest;
 }
+
+const char *text_value(const whit_text *texts, uint32_t count, const char *key)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        if (strcmp(texts[i].key, key) == 0)
+            return texts[i].value;
+    }
+    return NULL;
+}

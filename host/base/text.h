@@ -4,7 +4,7 @@
 
 #include <stdarg.h>
 
-#include "whit/whit_base.h"
+#include "whit/whit_image.h"
 
 /* The most characters of a file that a message quotes: enough to find the place, too few to read
    the file through messages. */
@@ -36,6 +36,10 @@ double text_real(const char *text, char **end);
 
 /* Appends to `text`, which lies in a buffer of `bytes`. What does not fit is cut. */
 void text_add(char *text, size_t bytes, const char *format, ...) WHIT_PRINTF(3, 4);
+
+/* The value of the first text of a picture with this key; NULL: there is none. A picture that was
+   tampered with may have several, and all readers have to take the same one. */
+const char *text_value(const whit_text *texts, uint32_t count, const char *key);
 
 /* The name with the fewest changed letters from `word`; NULL when none is near. */
 const char *text_nearest(const char *word, const char *const *names, uint32_t count);

@@ -240,6 +240,8 @@ echo 'tri scenes/tri.json --size 16x12' >tree/looks.whit
 expect 0 "a scene that names files elsewhere below the suite's folder" check tree/looks.whit --accept all --json tree.json
 again=$(jq -r '.cases[0].command' tree.json)
 check "the command that repeats it ($again)" sh -c "\"\$0\" ${again#whit }" "$WHIT"
+echo 'tri scenes/tri.json --allow-path ..' >tree/wide.whit
+refuse 2 "a folder of its own" "wide.whit:1: option .--allow-path. loosens a limit: .*--root" check tree/wide.whit
 expect 0 "below --root" check tree/looks.whit --root tree
 sed -i 's,models/tri,../outside,' tree/scenes/tri.json
 refuse 2 "one that names files outside of it" "tree/scenes/tri.json:1.*it lies outside of the folder" check tree/looks.whit

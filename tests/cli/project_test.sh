@@ -55,6 +55,8 @@ rm -f no.png
 expect 2 "no terminal" render a.png --quiet -o no.png </dev/null
 said "politely" "no terminal to ask at; --yes says yes"
 check "no picture" test ! -e no.png
+echo 'vec3 post(ivec2 at, vec3 color) { return color.bgr; }' >other.glsl
+expect 0 "other functions" render scenes/cube.json --size 40x30 --quiet --shader other.glsl -o other.png
 if command -v script >/dev/null; then
     for answer in y n; do
         echo $answer | script -qec "$WHIT render a.png -o $answer.png" /dev/null >"$OUT/asked"
@@ -62,6 +64,16 @@ if command -v script >/dev/null; then
     done
     check "yes draws" test -e y.png
     check "no draws nothing" test ! -e n.png
+    # A picture that is replaced by another one while the question stands is not drawn.
+    cp a.png swapped.png
+    : >"$OUT/asked"
+    {
+        until grep -q 'Load and compile it' "$OUT/asked"; do sleep 0.1; done
+        cp other.png swapped.png
+        echo y
+    } | script -qec "$WHIT render swapped.png -o no.png" /dev/null >>"$OUT/asked"
+    check "says so" grep -q 'swapped.png: its functions are others than those that were shown' "$OUT/asked"
+    check "draws nothing" test ! -e no.png
 fi
 
 # ---- Files ----
@@ -83,6 +95,22 @@ refuse 2 "no folder above" "cannot be made" shader extract a.exr --into none/x
 refuse 2 "a picture without any" "without .whit:shader." shader extract plain.png
 refuse 2 "no picture" "" shader extract my/a.glsl
 check "nothing is left beside" test "$(find . -name '.*' ! -name . | wc -l)" -eq 0
+
+# A picture with two texts of functions: those that are shown are those that are compiled and extracted.
+at() { LC_ALL=C grep -abo "$1" "$2" | head -1 | cut -d : -f 1; }
+text=$(at tEXtwhit:shader other.png)
+bytes=$(od -An -tu1 -j $((text - 4)) -N 4 other.png | awk '{ print (($1 * 256 + $2) * 256 + $3) * 256 + $4 + 12 }')
+{
+    head -c $(($(at IDAT a.png) - 4)) a.png
+    tail -c +$((text - 3)) other.png | head -c "$bytes"
+    tail -c +$(($(at IDAT a.png) - 3)) a.png
+} >twice.png
+expect 0 "two texts" render twice.png --yes -o again.png
+check "the first one is shown" sh -c 'grep -q "functions  a.glsl" "$1" && ! grep -q other.glsl "$1"' - "$OUT/stderr"
+expect 0 "and compiled" compare a.png again.png --metric differing --tolerance 0
+expect 0 "and extracted" shader extract twice.png
+check "alone" test "$(ls twice)" = "a.glsl
+part"
 
 # ---- Options and scenes that no picture may set ----
 

@@ -42,7 +42,8 @@ static const struct setting refused[] = {
     REFUSED("max-error", by_time),
     REFUSED("recipe", "takes options from a picture: write them out"),
     REFUSED("yes", "takes options from a picture: write them out"),
-    REFUSED("allow-path", loosens),
+    REFUSED("allow-path", "loosens a limit: a scene may name files below the suite's folder, or "
+                          "below that of --root"),
     REFUSED("trust", loosens),
     REFUSED("stages", loosens),
     REFUSED("memory-limit", loosens),

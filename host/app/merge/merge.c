@@ -11,7 +11,7 @@
 
 static const char *text_of(const struct merge_part *part, const char *key)
 {
-    return recipe_text(part->texts, part->text_count, key);
+    return text_value(part->texts, part->text_count, key);
 }
 
 static whit_result read_part(struct merge_part *part, const char *path,

@@ -140,15 +140,6 @@ void recipe_add_part(struct recipe *recipe, const struct part *part,
         add(recipe, PART_KEY, document_line(part_document(part, settings)));
 }
 
-const char *recipe_text(const whit_text *texts, uint32_t count, const char *key)
-{
-    for (uint32_t i = 0; i < count; ++i) {
-        if (strcmp(texts[i].key, key) == 0)
-            return texts[i].value;
-    }
-    return NULL;
-}
-
 void recipe_finish(struct recipe *recipe)
 {
     for (uint32_t i = 0; i < recipe->count; ++i)

@@ -39,8 +39,6 @@ void recipe_add_view(struct recipe *recipe, const struct settings *settings,
 /* Adds to the recipe which part of a picture was drawn, if it is not all of it. */
 void recipe_add_part(struct recipe *recipe, const struct part *part,
                      const struct settings *settings);
-/* The value of a text; NULL: there is none with this key. */
-const char *recipe_text(const whit_text *texts, uint32_t count, const char *key);
 /* How many rays of each kind there were, as an object. */
 json_t *recipe_rays(const whit_stats *stats);
 /* The text of whit:counters for these statistics; free() it. */

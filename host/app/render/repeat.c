@@ -11,6 +11,7 @@
 #include "base/input.h"
 #include "base/path.h"
 #include "base/roots.h"
+#include "base/text.h"
 
 enum { WORDS_MAX = 256, COMMAND_BYTES = 16384, LEFT_BYTES = 256, SAID_BYTES = 1024 };
 
@@ -122,7 +123,7 @@ static bool find_others(const struct recipe_read *recipe, struct settings *setti
                         why);
     if (!settings->shader[0])
         return true;
-    if (!recipe_text(recipe->texts, recipe->text_count, WHIT_SHADER_KEY))
+    if (!text_value(recipe->texts, recipe->text_count, WHIT_SHADER_KEY))
         return CLI_FAIL(false, "%s: the functions that it was made with are not in it",
                         recipe->picture);
     if (strlen(recipe->picture) >= sizeof settings->shader)
@@ -183,18 +184,36 @@ static bool ask(const struct recipe_read *recipe)
     return yes;
 }
 
+/* Whether the functions that the picture carries are still those that were shown: to be compiled,
+   they are read again. */
+static bool is_as_shown(const struct recipe_read *recipe, const struct settings *settings)
+{
+    const char *folders[SETTING_FOLDERS_MAX];
+    const whit_load_params params = settings_load(settings, folders);
+    const char *shown = text_value(recipe->texts, recipe->text_count, WHIT_SHADER_KEY);
+    whit_text *texts;
+    uint32_t count;
+    if (whit_image_load_texts(recipe->picture, &params, &cli_log, &texts, &count) != WHIT_OK)
+        return false;
+    const char *now = text_value(texts, count, WHIT_SHADER_KEY);
+    bool same = now && strcmp(now, shown) == 0;
+    whit_memory_destroy(texts);
+    return same || CLI_FAIL(false, "%s: its functions are others than those that were shown",
+                            recipe->picture);
+}
+
 static bool confirm(const struct recipe_read *recipe, const struct settings *settings, bool yes)
 {
     whit_shader_file *files = NULL;
     uint32_t count = 0;
     if (strcmp(settings->shader, recipe->picture) == 0 &&
-        whit_shader_unpack(recipe_text(recipe->texts, recipe->text_count, WHIT_SHADER_KEY),
+        whit_shader_unpack(text_value(recipe->texts, recipe->text_count, WHIT_SHADER_KEY),
                            recipe->picture, &cli_log, &files, &count) != WHIT_OK)
         return false;
     if (!yes || !settings->quiet)
         tell(recipe, settings, files, count);
     whit_memory_destroy(files);
-    return yes || ask(recipe);
+    return yes || (ask(recipe) && (count == 0 || is_as_shown(recipe, settings)));
 }
 
 /* ---- All of it ---- */
@@ -206,8 +225,8 @@ static bool load(struct recipe_read *recipe, const struct job *job, struct setti
     if (whit_image_load_texts(recipe->picture, &params, &cli_log, &recipe->texts,
                               &recipe->text_count) != WHIT_OK)
         return false;
-    const char *command = recipe_text(recipe->texts, recipe->text_count, "whit:command");
-    if (recipe_text(recipe->texts, recipe->text_count, VIEW_CAMERA_KEY))
+    const char *command = text_value(recipe->texts, recipe->text_count, "whit:command");
+    if (text_value(recipe->texts, recipe->text_count, VIEW_CAMERA_KEY))
         return CLI_FAIL(false,
                         "%s: its camera is one that --camera has no words for; " VIEW_CAMERA_KEY
                         " in its recipe is a line for a file of --cameras",
@@ -236,9 +255,9 @@ static bool read_over(struct recipe_read *recipe, struct job *job, struct cli_re
     job->settings = settings;
     job->settings.given = 0; /* no conflict where the command line repeats an option of the
                                 recipe */
-    const char *hash = recipe_text(recipe->texts, recipe->text_count, "whit:scene_hash");
+    const char *hash = text_value(recipe->texts, recipe->text_count, "whit:scene_hash");
     job->recipe_hash = hash ? strtoull(hash, NULL, 16) : 0;
-    const char *part = recipe_text(recipe->texts, recipe->text_count, PART_KEY);
+    const char *part = text_value(recipe->texts, recipe->text_count, PART_KEY);
     snprintf(job->recipe_part, sizeof job->recipe_part, "%s", part ? part : "");
     cli_reader_init(reader, command, argc, argv);
     if (!job_read(job, reader, own, true))

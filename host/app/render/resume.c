@@ -8,6 +8,7 @@
 #include "app/render/recipe.h"
 #include "app/render/render_command.h"
 #include "base/file.h"
+#include "base/text.h"
 
 /* ---- Options ---- */
 
@@ -46,13 +47,13 @@ static bool decides(const char *key)
 static bool same_recipe(const struct recipe *wanted, const whit_text *texts, uint32_t count)
 {
     for (uint32_t i = 0; i < wanted->count; ++i) {
-        const char *text = recipe_text(texts, count, wanted->texts[i].key);
+        const char *text = text_value(texts, count, wanted->texts[i].key);
         if (decides(wanted->texts[i].key) && (!text || strcmp(text, wanted->texts[i].value) != 0))
             return false;
     }
     /* A part has all texts of the whole picture, and one more. */
-    return recipe_text(wanted->texts, wanted->count, PART_KEY) ||
-           !recipe_text(texts, count, PART_KEY);
+    return text_value(wanted->texts, wanted->count, PART_KEY) ||
+           !text_value(texts, count, PART_KEY);
 }
 
 static bool holds_ids(const whit_image *image)

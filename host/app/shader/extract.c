@@ -10,6 +10,7 @@
 #include "app/render/recipe.h"
 #include "base/file.h"
 #include "base/path.h"
+#include "base/text.h"
 
 enum { PATH_BYTES = 4096 };
 
@@ -125,7 +126,7 @@ static whit_result unpack(const char *picture, const whit_load_params *params,
     whit_result result = whit_image_load_texts(picture, params, &cli_log, &texts, &text_count);
     if (result != WHIT_OK)
         return result;
-    const char *packed = recipe_text(texts, text_count, WHIT_SHADER_KEY);
+    const char *packed = text_value(texts, text_count, WHIT_SHADER_KEY);
     if (packed)
         result = whit_shader_unpack(packed, picture, &cli_log, files, count);
     else
