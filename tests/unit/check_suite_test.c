@@ -206,12 +206,13 @@ TEST_IN(a_wrong_case_has_a_name, folder_begin, folder_end)
                            "c 'a.json\n"
                            "[bc]* expect leeks == 0\n",
                            NULL));
-    assert_string_equal(said, "s.whit:1: there is no option `--sice`; did you mean `--size`?\n"
-                              "s.whit:3: the name `a` is that of line 1\n"
-                              "s.whit:4: the scene `x.json`: there is no such file\n"
-                              "s.whit:6: a quote has no end\n"
-                              "s.whit:7: `leeks`: there is no such field; did you mean `leaks`; "
-                              "docs/check.md lists them\n");
+    assert_string_equal(
+        said, "s.whit:1: there is no option `--sice`; did you mean `--size`?\n"
+              "s.whit:3: the name `a` is that of line 1; expectations of it begin with `expect`\n"
+              "s.whit:4: the scene `x.json`: there is no such file\n"
+              "s.whit:6: a quote has no end\n"
+              "s.whit:7: `leeks`: there is no such field; did you mean `leaks`; "
+              "docs/check.md lists them\n");
     assert_int_equal(suite.wrong, 5);
 }
 

@@ -87,7 +87,10 @@ static bool check_name(const struct line *line, const char *name)
         return refuse(line, "the name `%s`: all, and what starts with - or ., cannot be names",
                       name);
     const struct check_case *other = suite_find(line->suite, name);
-    return !other || refuse(line, "the name `%s` is that of line %u", name, other->line);
+    return !other || refuse(line,
+                            "the name `%s` is that of line %u; expectations of it begin with "
+                            "`expect`",
+                            name, other->line);
 }
 
 /* ---- Cases ---- */
