@@ -159,12 +159,8 @@ void whit_scene_get_light(const whit_scene *handle, uint32_t index, whit_light_i
     memcpy(info->color, light->color, sizeof info->color);
 }
 
-void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera_info *info)
+static void describe_camera(const struct scene_camera *camera, whit_camera_info *info)
 {
-    *info = (whit_camera_info){.name = ""};
-    if (index >= handle->pose.camera_count)
-        return;
-    const struct scene_camera *camera = &handle->pose.cameras[index];
     bool perspective = camera->kind == WHIT_CAMERA_PERSPECTIVE;
     bool orthographic = camera->kind == WHIT_CAMERA_ORTHOGRAPHIC;
     *info = (whit_camera_info){
@@ -180,6 +176,26 @@ void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera
     memcpy(info->eye, camera->eye, sizeof info->eye);
     memcpy(info->target, camera->target, sizeof info->target);
     memcpy(info->up, camera->up, sizeof info->up);
+}
+
+void whit_scene_get_camera(const whit_scene *handle, uint32_t index, whit_camera_info *info)
+{
+    *info = (whit_camera_info){.name = ""};
+    if (index < handle->pose.camera_count)
+        describe_camera(&handle->pose.cameras[index], info);
+}
+
+whit_result whit_scene_pose_camera(const whit_scene *handle, uint32_t index, double time_s,
+                                   whit_camera_info *info)
+{
+    struct scene_camera camera;
+    whit_scene_get_camera(handle, index, info);
+    if (index >= handle->pose.camera_count)
+        return WHIT_OK;
+    whit_result result = scene_pose_camera(handle->scene, index, time_s, &camera);
+    if (result == WHIT_OK)
+        describe_camera(&camera, info);
+    return result;
 }
 
 void whit_scene_get_instance(const whit_scene *handle, uint32_t index, whit_instance_info *info)

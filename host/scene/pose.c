@@ -234,6 +234,18 @@ static struct scene_camera pose_camera(const struct scene_camera *camera,
     return out;
 }
 
+whit_result scene_pose_camera(const struct scene *scene, uint32_t index, double time_s,
+                              struct scene_camera *camera)
+{
+    struct affine *nodes = pose_nodes(scene, time_s);
+    if (!nodes)
+        return log_failure(&scene->log, WHIT_ERROR_MEMORY, "%s: out of memory for a camera",
+                           scene->name);
+    *camera = pose_camera(&scene->cameras[index], nodes);
+    free(nodes);
+    return WHIT_OK;
+}
+
 static struct affine instance_matrix(const struct scene_instance *instance,
                                      const struct affine *nodes)
 {

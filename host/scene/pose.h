@@ -17,5 +17,8 @@ WHIT_CHECK whit_result scene_pose_init(const struct scene *scene, double time_s,
 void scene_pose_objects(const struct scene *scene, const struct scene_pose *pose, double lo[3],
                         double hi[3]);
 void scene_pose_finish(struct scene_pose *pose);
+/* A camera of the scene at a time. WHIT_ERROR_MEMORY. */
+WHIT_CHECK whit_result scene_pose_camera(const struct scene *scene, uint32_t index, double time_s,
+                                         struct scene_camera *camera);
 
 #endif

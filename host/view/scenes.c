@@ -15,6 +15,7 @@
 #include "view/remembered_cameras.h"
 #include "view/scenes.h"
 #include "view/view_private.h"
+#include "whit/whit_program.h"
 
 /* ---- Cameras ---- */
 
@@ -22,7 +23,9 @@
 static void read_camera(struct view *view, uint32_t index)
 {
     whit_camera_info info;
-    whit_scene_get_camera(view->scene->scene, index, &info);
+    view->camera_time_s = view->frame.settings.picture.time_s;
+    if (whit_scene_pose_camera(view->scene->scene, index, view->camera_time_s, &info) != WHIT_OK)
+        whit_scene_get_camera(view->scene->scene, index, &info);
     camera_set(&view->camera, info.eye, info.target, info.up, info.fov_y_degrees);
     if (info.target_is_direction)
         camera_reach(&view->camera, view->scene->info.objects_lo, view->scene->info.objects_hi);

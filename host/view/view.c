@@ -164,8 +164,9 @@ static void take_frame(struct view *view)
     if (other_scene)
         scenes_show(view);
     shaders_take(view);
-    /* A scene that is read again, or turned, may have other cameras. */
-    if ((!view->camera_known || (other_scene && view->file_camera >= 0)) &&
+    /* A scene that is read again, or turned, may have other cameras, and cameras move with time. */
+    bool other_camera = other_scene || frame->settings.picture.time_s != view->camera_time_s;
+    if ((!view->camera_known || (other_camera && view->file_camera >= 0)) &&
         settings_same_scene(&frame->settings, &view->settings))
         view_learn_camera(view);
     count_picture(view);

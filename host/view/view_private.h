@@ -56,6 +56,7 @@ struct view {
     struct view_camera camera; /* settings.camera as numbers */
     bool camera_known;         /* false: the scene's camera was not read yet */
     int file_camera;           /* index of the scene's camera; -1: moved by hand */
+    double camera_time_s;      /* at which `camera` is that of the scene */
 
     struct engine_frame frame;
     struct engine_status status;

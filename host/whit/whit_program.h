@@ -69,6 +69,11 @@ WHIT_CHECK whit_result whit_renderer_draw_over(whit_renderer *renderer, const wh
 WHIT_CHECK whit_result whit_renderer_sample_costs(whit_renderer *renderer, uint32_t pixels,
                                                   whit_cost *cost);
 
+/* whit_scene_get_camera at a finite time of the animation. WHIT_ERROR_MEMORY: it is that at
+   time 0. */
+WHIT_CHECK whit_result whit_scene_pose_camera(const whit_scene *scene, uint32_t index,
+                                              double time_s, whit_camera_info *info);
+
 /* Makes the camera ray through the middle of each pixel, row by row, at time 0, with the bits of
    those of kernels. WHIT_ERROR_USAGE where there is no such camera, or it is degenerate. */
 WHIT_CHECK whit_result whit_camera_rays(const whit_scene *scene, const whit_camera *camera,

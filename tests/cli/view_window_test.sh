@@ -86,6 +86,18 @@ fi
 # ---- Time ----
 
 if part 1 2; then
+    # A camera of the file that moves: the user goes on from where it is.
+    cat >"$OUT/moves.json" <<JSON
+{ "objects": [ { "shape": "plane", "size": 10 } ], "camera": { "eye": [0, 2, 6],
+  "animation": { "translation": { "times": [0, 4], "values": [[0, 0, 0], [4, 0, 0]] } } } }
+JSON
+    play "a camera that moves" "$OUT/moves.json" $SMALL --time 1 <<END
+start:
+near: wheel 0 1 | words has --camera 1,1.
+file: press 0 | words not as near
+later: press Space, wait 1500, press Space, still, wheel 0 1 | words has --camera 2.5,1.
+END
+
     play "animation" "$SCENES/spin.json" $SMALL --fps 10 <<END
 start:
 two: press Period x2 | time_s = 0.2 | frame.ids not as start
