@@ -88,6 +88,8 @@ whit_result whit_image_save_layers(const whit_image *image, const whit_image_lay
                                    uint32_t text_count, const whit_log *log)
 {
     struct image_layer items[WHIT_LAYERS_MAX];
+    if (!path)
+        return API_FAIL(log, WHIT_ERROR_USAGE, "there is no path of a file to write");
     for (uint32_t i = 0; i < layer_count && i < WHIT_LAYERS_MAX; ++i)
         items[i] = (struct image_layer){layers[i].name, &layers[i].image->image};
     return image_save(log, &image->image, items, layer_count, path, texts, text_count);

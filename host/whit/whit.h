@@ -9,13 +9,13 @@
    Ownership: what a function creates, its destroy function ends; destroy accepts NULL. Handles
    borrow what they were made from: scene <- accel <- renderer -> device; destroy in reverse order.
    NULL params mean all defaults. Other pointers, handles included, are not NULL unless their
-   comment allows it; a NULL path of a file to load is WHIT_ERROR_USAGE. In params structs 0 means
-   the default, except in whit_renderer_params: start that from whit_renderer_defaults(), because 0
-   bounces there means none and a bail-out of 0 traces every ray. Params are read during the call
-   only. On failure an out parameter is NULL or untouched, the reason went to the log callback as
-   one line (where the call or a handle has one; what a `cancel` flag ended may log nothing), and
-   the result says which kind it was. Each function names the results that it may give beside
-   WHIT_OK and WHIT_ERROR_MEMORY, which any of them may.
+   comment allows it; a NULL path of a file to load or to write is WHIT_ERROR_USAGE. In params
+   structs 0 means the default, except in whit_renderer_params: start that from
+   whit_renderer_defaults(), because 0 bounces there means none and a bail-out of 0 traces every
+   ray. Params are read during the call only. On failure an out parameter is NULL or untouched, the
+   reason went to the log callback as one line (where the call or a handle has one; what a `cancel`
+   flag ended may log nothing), and the result says which kind it was. Each function names the
+   results that it may give beside WHIT_OK and WHIT_ERROR_MEMORY, which any of them may.
 
    Threads: different handles may be used from different threads; one handle from one at a time. An
    accel and all renderers and references made from it count as one handle, for its trees stand at
@@ -24,6 +24,9 @@
    handler included. Callbacks return: an exception or longjmp that leaves one leaves locks held,
    that of messages among them, and the next call may wait forever. One for messages calls nothing
    that logs, as it would wait for itself.
+
+   Where memory runs out calls give WHIT_ERROR_MEMORY. Compilers within drivers, such as the LLVM of
+   lavapipe, may end the process instead, where it is they that run out.
 
    The program may have set any locale: numbers in files, and in texts about pictures and pixels,
    have a point; those in some messages have the program's sign.

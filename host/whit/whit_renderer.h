@@ -214,10 +214,10 @@ WHIT_CHECK whit_result whit_renderer_set_time(whit_renderer *renderer, double ti
    exposure_ev, soft_highlights, step_spacing, step_aov, few_pixels, reuse_rays, time_stages and
    sliders, and nothing else; the camera's name is borrowed until the next call
    that succeeds. The picture is that of a renderer made with these params, byte for byte.
-   WHIT_ERROR_USAGE and others as of whit_renderer_create. Params out of range leave the former view
-   and picture, and so does a camera that is refused while time_s stays; after other errors the
-   renderer may have no picture, and whit_renderer_render gives WHIT_ERROR_USAGE until a call
-   succeeds. */
+   WHIT_ERROR_USAGE without a device; this and others as of whit_renderer_create. Params out of
+   range leave the former view and picture, and so does a camera that is refused while time_s stays;
+   after other errors the renderer may have no picture, and whit_renderer_render gives
+   WHIT_ERROR_USAGE until a call succeeds. */
 WHIT_CHECK whit_result whit_renderer_set_view(whit_renderer *renderer,
                                               const whit_renderer_params *params);
 

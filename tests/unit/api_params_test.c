@@ -166,6 +166,11 @@ TEST(files_need_a_path)
                      WHIT_ERROR_USAGE);
     assert_int_equal(messages.errors, 4);
     assert_string_equal(messages.last_error, "there is no path of a file to load");
+    const float grey = 0.5f;
+    assert_int_equal(whit_image_create(1, 1, 1, &grey, &image), WHIT_OK);
+    assert_int_equal(whit_image_save(image, NULL, NULL, 0, &warnings_log), WHIT_ERROR_USAGE);
+    assert_string_equal(messages.last_error, "there is no path of a file to write");
+    whit_image_destroy(image);
 }
 
 /* Wrapped at link time: while it is set, there is no memory for as many pixels. */
