@@ -106,6 +106,8 @@ def test_rays(renderer):
     for wrong in (((0, 5), (0, -1, 0)), ((0, 5, 0), (0, -1, 0, 1))):
         with pytest.raises(ValueError, match="3 numbers are needed"):
             renderer.trace([wrong])
+    with pytest.raises(TypeError, match="not str"):
+        renderer.trace([((0, "5", 0), (0, -1, 0))])
     for device in (0, whit.TraceOn.DEVICE):
         with pytest.raises(whit.Error, match="without a device"):
             twin.trace(rays, on=device)

@@ -476,8 +476,9 @@ def _rays_of(rays):
         view = memoryview(rays)
     except TypeError:
         rays = [(origin, *(span or (0.0, float("inf"))), direction) for origin, direction, *span in rays]
-        return (Ray * len(rays))(*(Ray(_of_length("origin", 3, o), low, _of_length("dir", 3, d), high)
-                                   for o, low, high, d in rays))
+        vector = c_float * 3
+        return (Ray * len(rays))(*(Ray(vector(*_of_length("origin", 3, o)), low,
+                                       vector(*_of_length("dir", 3, d)), high) for o, low, high, d in rays))
     bytes_each = ctypes.sizeof(Ray)
     whole = view.itemsize == bytes_each or view.ndim <= 1 or view.shape[-1] * view.itemsize == bytes_each
     letters = set(re.sub(r":[^:]*:|[T{}()<=@0-9,]", "", view.format))  # of a struct too: "T{(3)<f:origin:<f:t_min:...}"
