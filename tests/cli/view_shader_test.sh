@@ -133,6 +133,13 @@ END
         check "the file of settings says $words" grep -qxF -e "$words" whit-0001.view
         check "and so does Ctrl+C" grep -qF -e "$words " line
     done
+    play "an aov that is saved" cube.json --size 96x64 --shader live/a.glsl --aov height <<END
+still
+press F12
+END
+    mv whit-0002.png height.png
+    expect 0 "and drawn by its recipe" render height.png --yes --quiet -o again.png
+    expect 0 "is the same" compare height.png again.png --metric differing --tolerance 0
     play "by the file, and A beside B" cube.json --state whit-0001.view --ui-scale 0.5 <<END
 state: | error =
 panel: press X, press Tab

@@ -71,19 +71,22 @@ static whit_result leave_alpha_out(const whit_image *image, whit_image **out)
     return result;
 }
 
+whit_result layers_save_image(const whit_image *image, const char *path,
+                              const struct recipe *recipe, const whit_log *log)
+{
+    whit_image *opaque = NULL;
+    whit_result result = path_is(path, "exr") ? WHIT_OK : leave_alpha_out(image, &opaque);
+    if (result == WHIT_OK)
+        result = whit_image_save(opaque ? opaque : image, path, recipe->texts, recipe->count, log);
+    whit_image_destroy(opaque);
+    return result;
+}
+
 whit_result layers_save(const struct layers *layers, const char *name, const char *path,
                         const struct recipe *recipe)
 {
     const whit_image *image = NULL;
-    whit_image *opaque = NULL;
-    whit_result result = WHIT_OK;
     for (uint32_t i = 0; i < layers->count; ++i)
         image = strcmp(layers->items[i].name, name) == 0 ? layers->images[i] : image;
-    if (!path_is(path, "exr"))
-        result = leave_alpha_out(image, &opaque);
-    if (result == WHIT_OK)
-        result =
-            whit_image_save(opaque ? opaque : image, path, recipe->texts, recipe->count, &cli_log);
-    whit_image_destroy(opaque);
-    return result;
+    return layers_save_image(image, path, recipe, &cli_log);
 }

@@ -29,8 +29,11 @@ void layers_finish(struct layers *layers);
 
 /* Whether the shader has the function of --aov NAME; prints an error where it does not. */
 bool layers_check(const struct job *job);
-/* Writes the image of --aov NAME, which layers_check has found: all four numbers into an .exr, the
-   first three, as red, green and blue, into other files. */
+/* Writes the image of an aov: all four numbers into an .exr, the first three, as red, green and
+   blue, into other files. */
+WHIT_CHECK whit_result layers_save_image(const whit_image *image, const char *path,
+                                         const struct recipe *recipe, const whit_log *log);
+/* The same for the image of --aov NAME, which layers_check has found. */
 WHIT_CHECK whit_result layers_save(const struct layers *layers, const char *name, const char *path,
                                    const struct recipe *recipe);
 

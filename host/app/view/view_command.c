@@ -6,6 +6,7 @@
 #include "app/arguments.h"
 #include "app/commands.h"
 #include "app/cost/cost_kept.h"
+#include "app/render/layers.h"
 #include "app/render/recipe.h"
 #include "app/render/repeat.h"
 #include "app/view/state_file.h"
@@ -109,7 +110,9 @@ static whit_result save_shot(const struct view_shot *shot, const char *path, con
     if (!recipe_init(&recipe, shot->settings, shot->scene, shot->shader, shot->device, shot->stats,
                      path, NULL))
         return WHIT_ERROR_MEMORY;
-    whit_result result = whit_image_save(shot->color, path, recipe.texts, recipe.count, log);
+    whit_result result = shot->settings->aov[0]
+                             ? layers_save_image(shot->color, path, &recipe, log)
+                             : whit_image_save(shot->color, path, recipe.texts, recipe.count, log);
     recipe_finish(&recipe);
     return result;
 }
