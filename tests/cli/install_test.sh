@@ -65,9 +65,12 @@ declared "$SOURCE/host/whit/whit_program.h" >"$OUT/own"
 declared include/whit/*.h >"$OUT/public"
 check "and none that is for whit's own programs" \
     test -s "$OUT/own" -a -z "$(comm -23 "$OUT/own" "$OUT/public" | grep -xFf - "$OUT/names")"
+# A sanitizer's library has to come before libc, so the program links it too.
+sanitize=
+grep -q "^WHIT_SANITIZE:.*=ON$" "$BUILD/CMakeCache.txt" && sanitize=-fsanitize=address,undefined
 by_pkg_config() {
     # shellcheck disable=SC2046
-    "${CC:-cc}" -std=c11 "$SOURCE/tests/example/example.c" -o "$OUT/by_pkg_config" \
+    "${CC:-cc}" -std=c11 $sanitize "$SOURCE/tests/example/example.c" -o "$OUT/by_pkg_config" \
         $(PKG_CONFIG_PATH=$(dirname "$library")/pkgconfig pkg-config --cflags --libs whit) -lm &&
         LD_LIBRARY_PATH=$(dirname "$library") "$OUT/by_pkg_config" "$CUBE" "$OUT/shared.png"
 }
@@ -95,7 +98,7 @@ pc() {
     pc DATADIR=/d 'pythondir=/d/whit/python' 'libdir=${prefix}/lib/x'
 }
 # Debuggers and sanitizers are told where sources are.
-if grep -q "^CMAKE_BUILD_TYPE:.*=Release$" "$BUILD/CMakeCache.txt" && ! grep -q "^WHIT_SANITIZE:.*=ON$" "$BUILD/CMakeCache.txt"; then
+if grep -q "^CMAKE_BUILD_TYPE:.*=Release$" "$BUILD/CMakeCache.txt" && [ -z "$sanitize" ]; then
     check "no file names the folder of its sources" \
         test -z "$(find . -type f -exec grep -lF "$(cd "$SOURCE" && pwd)/" {} +)"
 fi
