@@ -276,3 +276,65 @@ void cost_choice_text(const struct cost_choice *choice, char *text, size_t text_
     cost_choice_apply(choice, &settings);
     settings_write(&settings, SETTINGS_LINE, " ", text, text_bytes);
 }
+
+/* ---- Measured rows in place of a choice ---- */
+
+bool choose_keeps(const struct cost_goal *goal, const struct cost_row *row, double error)
+{
+    return (goal->kind == COST_WITHIN ? row->ms[COST_WALL] : error) <= goal->limit;
+}
+
+/* The position of the row's setting in the order of within.c, from 1; 0: it gives up nothing.
+   Combinations come last, since the row does not tell what they give up. */
+static uint32_t given_up(const struct cost_report *report, const struct cost_row *row)
+{
+    bool combined = row != report->rows && row->knob_index == WHIT_NONE;
+    /* WHIT_NONE + 1 is 0. */
+    return 1 + (combined ? cost_steps() : cost_step_of(row->knob, row->setting));
+}
+
+/* The row that keeps the limit: for a limit of error the cheapest one; for a limit of time the one
+   that gives up what is missed least, and among equal ones the one with the least error. NULL: none
+   keeps it. */
+static const struct cost_row *keeping_row(const struct cost_report *report,
+                                          const struct cost_goal *goal)
+{
+    const struct cost_row *best_row = NULL;
+    double best = INFINITY;
+    uint32_t best_step = WHIT_NONE;
+    for (uint32_t i = 0; i < report->row_count; ++i) {
+        const struct cost_row *row = &report->rows[i];
+        double error = cost_error_left(report, row, goal->metric);
+        double rank = goal->kind == COST_WITHIN ? error : row->ms[COST_WALL];
+        uint32_t step = goal->kind == COST_WITHIN ? given_up(report, row) : 0;
+        /* Settings that change hits are never taken: one picture does not show which rays miss. */
+        if (!row->measured || row->broken || row->change == SETTING_HITS ||
+            !choose_keeps(goal, row, error) || step > best_step ||
+            (step == best_step && !(rank < best)))
+            continue;
+        best = rank;
+        best_step = step;
+        best_row = row;
+    }
+    return best_row;
+}
+
+void choose_measured(const struct cost_report *report, struct cost_answer *answer)
+{
+    const struct cost_goal *goal = &answer->goal;
+    const struct cost_row *row = keeping_row(report, goal);
+    if (!row)
+        return;
+    double error = cost_error_left(report, row, goal->metric);
+    /* More samples may make a worse picture if they are no power of 4. */
+    if (answer->kept &&
+        (goal->kind != COST_WITHIN || given_up(report, row) > 0 ||
+         !(error < cost_error_left(report, &report->rows[answer->row], goal->metric))))
+        return;
+    *answer = (struct cost_answer){.goal = answer->goal,
+                                   .found = true,
+                                   .kept = true,
+                                   .row = (uint32_t)(row - report->rows),
+                                   .ms = row->ms[COST_WALL],
+                                   .error = error};
+}

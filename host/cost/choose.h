@@ -32,6 +32,12 @@ double choose_from_sum(double sum, enum cost_metric metric);
    error, as for random samples, and the same bias, which is that of the usual settings. */
 double choose_quadruple(const struct cost_report *report, enum cost_metric metric, double sum);
 
+/* Whether a row with this error keeps the goal. */
+bool choose_keeps(const struct cost_goal *goal, const struct cost_row *row, double error);
+/* Takes a measured row in place of an answer that is not kept; for a limit of time, also in place
+   of one that is kept with a larger error, if the row gives up nothing. */
+void choose_measured(const struct cost_report *report, struct cost_answer *answer);
+
 /* Sets `best` of the rows in the Pareto set of time, by the report's clock, and error. */
 void cost_mark_best(struct cost_report *report, enum cost_metric metric);
 

@@ -1,7 +1,6 @@
 #include "cost/choose.h"
 #include "cost/rays.h"
 #include "cost/row.h"
-#include "cost/within.h"
 #include "whit/whit_program.h"
 
 #include <math.h>
@@ -246,12 +245,6 @@ static void destroy_pictures(struct cost_row *row)
     row->picture = row->flip = NULL;
 }
 
-/* Whether a row with this error keeps the goal. */
-static bool is_kept(const struct cost_goal *goal, const struct cost_row *row, double error)
-{
-    return (goal->kind == COST_WITHIN ? row->ms[COST_WALL] : error) <= goal->limit;
-}
-
 static enum knob_level level_of(const struct cost_choice *choice)
 {
     enum knob_level level = KNOB_VIEW;
@@ -283,47 +276,8 @@ static whit_result measure_choice(struct measure *measure, const struct cost_cho
         measure_row(measure, &target, level_of(choice), 0.05 * measure->request->seconds, row);
     double error = cost_is_judged(report, row) ? cost_error_of(&row->error, answer->goal.metric)
                                                : answer->error;
-    answer->kept = result == WHIT_OK && row->measured && is_kept(&answer->goal, row, error);
+    answer->kept = result == WHIT_OK && row->measured && choose_keeps(&answer->goal, row, error);
     return result;
-}
-
-/* Takes a measured row that keeps the limit, where no predicted combination does. For a limit of
-   error that is the cheapest row; for a limit of time the one that comes first in the order of
-   within.c, and among equal ones the one with the least error. */
-static void take_measured(const struct cost_report *report, struct cost_answer *answer)
-{
-    const struct cost_goal *goal = &answer->goal;
-    double best = INFINITY;
-    uint32_t best_step = WHIT_NONE;
-    for (uint32_t i = 0; i < report->row_count; ++i) {
-        const struct cost_row *row = &report->rows[i];
-        double error = cost_error_left(report, row, goal->metric);
-        double rank = goal->kind == COST_WITHIN ? error : row->ms[COST_WALL];
-        /* WHIT_NONE + 1 is 0: rows that give up nothing come first. */
-        uint32_t step = goal->kind == COST_WITHIN ? cost_step_of(row->knob, row->setting) + 1 : 0;
-        /* Settings that change hits are never taken: one picture does not show which rays miss. */
-        if (!row->measured || row->broken || row->change == SETTING_HITS ||
-            !is_kept(goal, row, error) || step > best_step || (step == best_step && !(rank < best)))
-            continue;
-        best = rank;
-        best_step = step;
-        *answer = (struct cost_answer){.goal = answer->goal,
-                                       .found = true,
-                                       .kept = true,
-                                       .row = i,
-                                       .ms = row->ms[COST_WALL],
-                                       .error = error};
-    }
-}
-
-/* Whether a measured row keeps the limit of time too, with a smaller error, and gives up nothing:
-   more samples may make a worse picture if they are no power of 4. */
-static bool is_outdone(const struct cost_report *report, const struct cost_answer *answer)
-{
-    struct cost_answer other = {.goal = answer->goal};
-    take_measured(report, &other);
-    return answer->goal.kind == COST_WITHIN &&
-           other.error < cost_error_left(report, &report->rows[answer->row], other.goal.metric);
 }
 
 /* Predicts settings for a goal and measures them. Where they exceed the limit, tries again with a
@@ -357,8 +311,8 @@ static whit_result answer_goal(struct measure *measure, const struct cost_goal *
             break;
         aim.limit *= 0.8;
     }
-    if (result == WHIT_OK && (!answer->kept || is_outdone(report, answer)))
-        take_measured(report, answer);
+    if (result == WHIT_OK)
+        choose_measured(report, answer);
     return result;
 }
 

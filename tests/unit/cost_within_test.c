@@ -258,6 +258,48 @@ TEST(the_order_ends_with_what_is_missed_most)
     assert_int_equal(cost_step_of("shadows", "tinted"), WHIT_NONE);
 }
 
+static void set_row(uint32_t i, const char *knob, const char *setting, double ms, double rmse)
+{
+    uint32_t index = knob_find(knob);
+    report.rows[i] = (struct cost_row){.knob_index = index,
+                                       .setting_index = 0,
+                                       .change = SETTING_LIGHT,
+                                       .measured = true,
+                                       .ms = {ms},
+                                       .error = {.pixel_count = 1, .rmse = rmse}};
+    snprintf(report.rows[i].knob, sizeof report.rows[i].knob, "%s", knob);
+    snprintf(report.rows[i].setting, sizeof report.rows[i].setting, "%s", setting);
+    report.row_count = i + 1;
+}
+
+/* The row that answers a limit of 80 ms, for which row 3 was chosen; `kept`: it keeps the limit. */
+static uint32_t answered(bool kept)
+{
+    struct cost_answer answer = {
+        .goal = {.kind = COST_WITHIN, .limit = 80.0}, .found = true, .kept = kept, .row = 3};
+    choose_measured(&report, &answer);
+    return answer.row;
+}
+
+/* A combination that was chosen for another goal is not known to give up nothing. */
+TEST(a_kept_choice_is_left_only_for_a_row_that_gives_up_nothing)
+{
+    make_report();
+    set_row(1, "depth", "2", 70.0, 0.05);
+    set_row(2, "chosen", "within 40 ms", 40.0, 0.04);
+    set_row(3, "chosen", "within 80 ms", 75.0, 0.06);
+    assert_int_equal(answered(true), 3);
+    report.rows[3].ms[COST_WALL] = 90.0;
+    assert_int_equal(answered(false), 1);
+    report.rows[1].measured = false;
+    assert_int_equal(answered(false), 2);
+    report.rows[3].ms[COST_WALL] = 75.0;
+    set_row(4, "aa", "4", 78.0, 0.05);
+    assert_int_equal(answered(true), 4);
+    report.rows[4].error.rmse = 0.07;
+    assert_int_equal(answered(true), 3);
+}
+
 /* The opening sentence of a report in which four samples leave the share `left` of the visible
    error, and exact hits take `exact_ratio` times as long. */
 static const char *sentence_of(double usual_flip, double left, double exact_ratio)
