@@ -78,12 +78,23 @@ static bool is_grounded(const struct shape *shape, int axis)
     return fabs(shape->lo[axis]) <= SLAB * (shape->hi[axis] - shape->lo[axis]);
 }
 
+static bool is_centred(const struct shape *shape, int axis)
+{
+    return fabs(shape->lo[axis] + shape->hi[axis]) <= SLAB * (shape->hi[axis] - shape->lo[axis]);
+}
+
 /* A wall cabinet is above 0 on the axis that is up, and centred on the one along the wall. */
 static bool hangs(const struct shape *shape, int up, int along)
 {
-    return shape->lo[up] > SLAB * (shape->hi[up] - shape->lo[up]) &&
-           fabs(shape->lo[along] + shape->hi[along]) <=
-               SLAB * (shape->hi[along] - shape->lo[along]);
+    return shape->lo[up] > SLAB * (shape->hi[up] - shape->lo[up]) && is_centred(shape, along);
+}
+
+static bool is_board(const struct shape *shape, int axis)
+{
+    double extent[3];
+    for (int k = 0; k < 3; ++k)
+        extent[k] = shape->hi[k] - shape->lo[k];
+    return extent[axis] < BOARD * fmin(extent[(axis + 1) % 3], extent[(axis + 2) % 3]);
 }
 
 /* The area of a box along two axes. */
@@ -181,7 +192,8 @@ static struct ending look_below(const struct scene *scene, const struct shape *s
 }
 
 /* Whether the surface is a terrain whose heights are along the axis `up`. What stands with its
-   ground at 0 on the axis `other`, and on no third one, is a rough wall. */
+   ground at 0 on the axis `other`, and on no third one, is a rough wall. A board that is centred
+   along the third axis may be a relief. */
 static bool is_terrain(const struct scene *scene, const struct shape *shape, int up, int other)
 {
     int u = (up + 1) % 3, v = (up + 2) % 3;
@@ -200,8 +212,10 @@ static bool is_terrain(const struct scene *scene, const struct shape *shape, int
             slopes[u] += fabs(n[u]);
             slopes[v] += fabs(n[v]);
         }
-    bool stands = is_grounded(shape, other) && !is_grounded(shape, 3 - up - other);
-    return !stands && area > 0.0 && fabs(facing) >= (1.0 - GAPS) * area_of(shape, u, v) &&
+    int third = 3 - up - other;
+    bool wall = is_grounded(shape, other) && !is_grounded(shape, third);
+    bool relief = is_board(shape, up) && is_centred(shape, third);
+    return !wall && !relief && area > 0.0 && fabs(facing) >= (1.0 - GAPS) * area_of(shape, u, v) &&
            area <= (1.0 + ABOVE) * fabs(facing) && sloping >= 0.5 * area &&
            fmin(slopes[u], slopes[v]) >= OTHER_SLOPE * fmax(slopes[u], slopes[v]);
 }
@@ -210,11 +224,7 @@ static bool is_terrain(const struct scene *scene, const struct shape *shape, int
    the ground at 0 as modelling programs put it, and not on that of the other. */
 static bool stands_along(const struct scene *scene, const struct shape *shape, int up, int other)
 {
-    double extent[3];
-    for (int k = 0; k < 3; ++k)
-        extent[k] = shape->hi[k] - shape->lo[k];
-    bool board = extent[up] < BOARD * fmin(extent[(up + 1) % 3], extent[(up + 2) % 3]);
-    if (board || !is_grounded(shape, up) || is_grounded(shape, other))
+    if (is_board(shape, up) || !is_grounded(shape, up) || is_grounded(shape, other))
         return false;
     struct ending a = look_below(scene, shape, up), b = look_below(scene, shape, other);
     if ((a.flat >= STANDS && b.flat < HARDLY) || (a.low >= FLOOR && b.low < HARDLY) ||

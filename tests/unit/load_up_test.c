@@ -163,6 +163,30 @@ TEST(terrains_lie_and_curtains_hang)
     assert_int_equal(guess(shell, true, false), WHIT_UP_Y);
 }
 
+/* A flat surface of waves that faces z, centred along x, may be a relief; one at the corner of a
+   grid, or far from the origin, is a terrain. */
+TEST(reliefs_stand_and_flat_terrains_lie)
+{
+    static const struct {
+        float thick, x, y;
+        whit_up up;
+    } cases[] = {{0.2f, 0, 0, WHIT_UP_Y},
+                 {0.2f, 0, 3.6f, WHIT_UP_Y},
+                 {1, 0, 0, WHIT_UP_Z},
+                 {0.2f, 2, 2, WHIT_UP_Z},
+                 {0.2f, 500, 4000, WHIT_UP_Z}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        struct scene_mesh mesh = laid(waves(false));
+        for (uint32_t k = 0; k < mesh.vertex_count; ++k) {
+            float *p = mesh.positions + 3 * (size_t)k;
+            p[0] += cases[i].x;
+            p[1] += cases[i].y;
+            p[2] *= cases[i].thick;
+        }
+        assert_int_equal(guess(mesh, false, false), cases[i].up);
+    }
+}
+
 /* A cave that is open at the front, with a ball in it. */
 TEST(caves_with_something_inside_stand)
 {
