@@ -110,7 +110,7 @@ struct stage_set {
     uint32_t lights_each;            /* lights of a dispatch: SPEC_LIGHTS_EACH, or 1 */
     bool calls[CLASSES_MAX];         /* whether hits of a class send further rays */
     bool asks;                       /* whether hits go on to the shadow stages */
-    bool asks_directly;              /* the same of those of STAGE_SHADE_DIRECT and glass */
+    bool asks_directly; /* whether any hits do where STAGE_SHADE_DIRECT shades opaque surfaces */
 };
 
 /* Times of the stages of the tile that is being drawn, see stage_times.c. */

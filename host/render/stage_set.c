@@ -58,6 +58,8 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
         if (job->wanted[i] || i == STAGE_SHADE)
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
     }
+    job->stages[STAGE_RESOLVE].spec.SPEC_DIRECT = direct;
+    job->stages[STAGE_RESOLVE_LATER].spec.SPEC_DIRECT = direct;
     /* Without packets, the shadow rays of all generations have the same code. */
     share_kernel(job, STAGE_SHADOW, STAGE_SHADOW_LATER);
     if (!few)

@@ -382,8 +382,11 @@ uint32_t variant_classes(const struct target *target)
     return both ? CLASSES_MAX : 1;
 }
 
-/* Shadow rays of glass, and of many lights, would leave most lanes of their subgroup idle. Rays
-   that read textures or pass cut-outs need more of the scene than the kernel of a class knows. */
+/* Shadow rays of glass, and of many lights, would leave most lanes of their subgroup idle; those to
+   all points of a light with an area would fill an invocation's loops. Rays that read textures or
+   pass cut-outs need more of the scene than the kernel of a class knows. Probes and counters, which
+   have rows for each light's rays, and shadow catchers are left to the shadow stages. On a GPU it
+   was not measured. */
 bool variant_lights_directly(const struct target *target, const struct gpu_spec *spec,
                              uint32_t classes)
 {
@@ -398,7 +401,8 @@ bool variant_lights_directly(const struct target *target, const struct gpu_spec 
            !spec->SPEC_COUNT && !spec->SPEC_CATCHERS && !spec->SPEC_CUTOUTS && !patterned &&
            !renderer->params.shader && !renderer->params.all_effects &&
            !renderer->accel->no_trees && spec->SPEC_SHADOWS && spec->SPEC_LIGHTS &&
-           !(spec->SPEC_LIGHTS & LIGHT_FLAT_BITS) && renderer->pose.light_count <= LIGHTS_MAX;
+           !(spec->SPEC_LIGHTS & LIGHT_FLAT_BITS) && renderer->pose.light_count > 0 &&
+           renderer->pose.light_count <= LIGHTS_MAX;
 }
 
 bool variant_calls_rays(const struct gpu_spec *spec)

@@ -123,7 +123,7 @@ typedef struct whit_renderer_params {
        same. */
     bool few_pixels;
     /* Measures whit_stats.stages[].ms and whit_stats.shares, which on a CPU takes up to a tenth of
-       the picture's time. */
+       the picture's time. Timed tiles may need kernels of their own, which the stats then count. */
     bool time_stages;
     /* Keeps colours alone, which takes less memory, and on a CPU less time: WHIT_AOV_IDS and
        WHIT_AOV_CUTS give WHIT_ERROR_USAGE. */

@@ -353,10 +353,10 @@ uvec2 fetch_counts(uint generation, uint list)
 }
 
 // Whether the last generation that was traced called for no more rays. Where a loop was cut short
-// in a dispatch of several lights, the tile is drawn again.
+// that several lights share, the tile is drawn again. With SPEC_DIRECT, shading may have such loops.
 bool is_tile_done()
 {
-    if (SPEC_LIGHTS_EACH > 1u && (status_word & STATUS_UNFINISHED) != 0u)
+    if ((SPEC_LIGHTS_EACH > 1u || SPEC_DIRECT != 0u) && (status_word & STATUS_UNFINISHED) != 0u)
         return false;
     if (chunk.light == GENERATION_NONE)
         return true;

@@ -247,7 +247,7 @@ uint add_direct_light(bool wanted, Lit lit, inout vec3 sum, inout uint status)
         if (is_first_lane() && rays != 0u)
             atomicAdd(generations[chunk.generation].lists[LIST_LIGHTS + i].shadow_rays, rays);
         i++;
-    } while (another_iteration(i < frame.light_count));
+    } while (i < frame.light_count); // main() tells whether it was cut short
     return left;
 }
 
@@ -329,6 +329,8 @@ void main()
             lights = add_direct_light(asks, lit, sum, status);
         if (SPEC_DIRECT == 0u || has_bounds_alone())
             list_lit(asks, lights, lit, status);
+        if (SPEC_DIRECT != 0u && !loops_go_on(frame.light_count + 1u))
+            status |= STATUS_UNFINISHED_LOOP;
     }
     if (SPEC_DIRECT != 0u && alive)
         store_sum(id, sum, has);

@@ -10,4 +10,16 @@ bool another_iteration(bool again)
     return again && gl_WorkGroupID.y == 0u;
 }
 
+// False once the driver has ended a loop of this subgroup early: it then ends all loops behind that
+// one after their first iteration. `count`: 2 or more; not a constant, since compilers would unroll
+// the loop.
+bool loops_go_on(uint count)
+{
+    uint i = 0u;
+    do
+        i++;
+    while (another_iteration(i < count));
+    return i == count;
+}
+
 #endif

@@ -47,7 +47,7 @@ static bool others_sleep(void)
 
 /* The sanitizer's allocator keeps its locks over a fork: where another thread, such as one that a
    driver has just started, was in it, the child waits for ever at its first malloc. A thread that
-   sleeps is not in it. Threads that never sleep are waited for 2 s. */
+   sleeps is hardly ever in it. Threads that never sleep are waited for 2 s. */
 pid_t fork(void)
 {
     for (int tries = 0; tries < 2000 && !others_sleep(); tries++)

@@ -154,6 +154,25 @@ TEST(both_kernels_draw_the_same)
     }
 }
 
+/* Stages that are timed from the second picture on need kernels that the thread did not make. */
+TEST(stages_may_be_timed_once_the_kernels_are_there)
+{
+    whit_renderer_params params =
+        beside_params((whit_camera)CAMERA_AT(0, 6, 14, 0, 0, 0, 0, 1, 0, 40));
+    params.packets = WHIT_PACKETS_OFF;
+    params.classes = WHIT_CLASSES_MANY;
+    params.tile_size = 16;
+    struct scene *scene = ring_scene();
+    scene_put_lamp(scene, 0, 6, 3, 0.6f);
+    own_fixture f = fixture_open(scene, NULL, &params);
+    own_image first = render_general(&f);
+    params.time_stages = true;
+    assert_int_equal(renderer_set_view(f.renderer, &params), WHIT_OK);
+    own_image second = render_specialised(&f);
+    assert_non_null(f.renderer->picture.stages.set.passes[STAGE_SHADE_DIRECT].pipeline);
+    assert_same_image("timed", &first, &second);
+}
+
 /* An effect that is removed by name is missing in the general kernel too. */
 TEST(removed_effects_stay_removed)
 {

@@ -93,7 +93,26 @@ TEST(loops_that_are_cut_short_are_left_to_the_shadow_stages)
     for (int i = 0; i < LIGHTS; ++i)
         scene_put_sun(scene, 0, -1, 0, 0.1f);
     own_fixture f = fixture_open(scene, NULL, &params);
-    own_picture picture = render_picture(&f);
-    assert_int_equal(picture.stats.rays_shadow, LIGHTS);
+    params.classes = WHIT_CLASSES_ONE;
+    own_renderer apart = fixture_beside(&f, &params);
+    own_picture a = render_picture(&f), b = render_picture(&apart);
+    assert_same_light(&a, &b);
+    assert_int_equal(a.stats.rays_shadow, LIGHTS);
+    assert_true(a.color.pixels[0] > 0.1f);
     assert_int_equal(is_direct(&f), !device_get_limits(f.device)->loop_limited);
+}
+
+/* Without lights there is nothing to trace, whatever effects are added. */
+TEST(without_lights_nothing_is_added)
+{
+    whit_renderer_params params = params_of(WHIT_NUMERICS_WATERTIGHT, WHIT_CLASSES_MANY);
+    struct scene *scene = file_scene("sphereflake");
+    scene->light_count = 0;
+    scene->lights_wanted = WHIT_LIGHTS_NONE;
+    params.effects_added = UINT64_C(1) << SCENE_EFFECT_POINT_LIGHTS | UINT64_C(1)
+                                                                          << SCENE_EFFECT_SHADOWS;
+    own_fixture f = fixture_open(scene, NULL, &params);
+    own_picture picture = render_picture(&f);
+    assert_false(is_direct(&f));
+    assert_int_equal(picture.stats.rays_shadow, 0);
 }
