@@ -106,8 +106,8 @@ TEST(loops_that_are_cut_short_are_left_to_the_shadow_stages)
 TEST(without_lights_nothing_is_added)
 {
     whit_renderer_params params = params_of(WHIT_NUMERICS_WATERTIGHT, WHIT_CLASSES_MANY);
-    struct scene *scene = file_scene("sphereflake");
-    scene->light_count = 0;
+    struct scene *scene = dark_scene((double[]){0, 2, 0}, (double[]){0, 0, 0});
+    add_object(scene, mesh_box(4, 0.1, 4), material_plain("floor"), 0, 0, 0);
     scene->lights_wanted = WHIT_LIGHTS_NONE;
     params.effects_added = UINT64_C(1) << SCENE_EFFECT_POINT_LIGHTS | UINT64_C(1)
                                                                           << SCENE_EFFECT_SHADOWS;
