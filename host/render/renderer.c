@@ -58,9 +58,9 @@ whit_result renderer_compile(struct renderer *renderer)
     double start_ms = clock_ms();
     whit_result result = renderer->params.compile_async ? async_prepare(renderer)
                                                         : stages_compile(&renderer->picture);
+    /* Stages may be timed only since the thread began to make the kernels. */
     if (result == WHIT_OK && !renderer->async.general)
-        result =
-            stages_complete(&renderer->picture); /* stages may be timed since the thread began */
+        result = stages_complete(&renderer->picture);
     if (result == WHIT_OK)
         renderer->picture.stats.general = renderer->async.general;
     else

@@ -314,8 +314,8 @@ static struct bindings bind_stages(const struct target *target)
 bool variant_defers(const struct pipeline_params *params, struct gpu_spec *spec)
 {
     memcpy(spec, params->spec, sizeof *spec);
-    if (spec->SPEC_SETTLES ||
-        spec->SPEC_DIRECT) /* that one leaves such rays to the shadow stages */
+    /* STAGE_SHADE_DIRECT leaves such rays to the shadow stages. */
+    if (spec->SPEC_SETTLES || spec->SPEC_DIRECT)
         return false;
     spec->SPEC_SETTLES = 1;
     spec->SPEC_GROUP_SIZE = spec->SPEC_DEFERRED_GROUP;
