@@ -32,6 +32,7 @@ static void assert_same_light(const struct picture *a, const struct picture *b)
     for (int row = RENDER_STAGE_SHADOW; row < RENDER_STAGE_COUNT; ++row)
         assert_int_equal(a->stats.stages[row].rays, b->stats.stages[row].rays);
     assert_int_equal(a->stats.rays_shadow, b->stats.rays_shadow);
+    assert_true(a->stats.weight_cut_bailout == b->stats.weight_cut_bailout);
     assert_true(a->stats.rays_shadow > 0);
 }
 
@@ -78,28 +79,35 @@ TEST(timed_tiles_know_the_time_of_each_light)
     assert_true(is_direct(&f));
 }
 
-/* Where a loop that several lights share is cut short, lights get stages of their own. */
+/* Where a loop that several lights share is cut short, lights get stages of their own: at the only
+   sample of a pixel, or at a later one, where the first has passed by the floor. */
 TEST(loops_that_are_cut_short_are_left_to_the_shadow_stages)
 {
-    enum { SHEETS = 16000, LIGHTS = 4 };
+    enum { SHEETS = 16000, LIGHTS = 4, SAMPLES = 4 };
     static const float corners[9] = {-2, 10, -2, 0, 10, 3, 2, 10, -2};
-    whit_renderer_params params = params_of(WHIT_NUMERICS_WATERTIGHT, WHIT_CLASSES_MANY);
-    struct scene *scene = dark_scene((double[]){0, 2, 0}, (double[]){0, 0, 0});
-    struct scene_material sheet = material_plain("sheet"), clear = material_plain("floor");
-    set_rgb(sheet.transmission, 0.999f, 0.999f, 0.999f); /* 1/64 stop is more: nothing is lost */
-    params.width = params.height = 1;
-    add_object(scene, mesh_stack(SHEETS, corners, 1, 1e-4f), sheet, 0, 0, 0);
-    add_object(scene, mesh_box(4, 0.1, 4), clear, 0, 0, 0);
-    for (int i = 0; i < LIGHTS; ++i)
-        scene_put_sun(scene, 0, -1, 0, 0.1f);
-    own_fixture f = fixture_open(scene, NULL, &params);
-    params.classes = WHIT_CLASSES_ONE;
-    own_renderer apart = fixture_beside(&f, &params);
-    own_picture a = render_picture(&f), b = render_picture(&apart);
-    assert_same_light(&a, &b);
-    assert_int_equal(a.stats.rays_shadow, LIGHTS);
-    assert_true(a.color.pixels[0] > 0.1f);
-    assert_int_equal(is_direct(&f), !device_get_limits(f.device)->loop_limited);
+    for (int late = 0; late < 2; ++late) {
+        whit_renderer_params params = params_of(WHIT_NUMERICS_WATERTIGHT, WHIT_CLASSES_MANY);
+        struct scene *scene = dark_scene((double[]){0, 2, 0}, (double[]){0, 0, 0});
+        struct scene_material sheet = material_plain("sheet"), clear = material_plain("floor");
+        set_rgb(clear.reflection, 0.1f, 0.1f, 0.1f); /* a reflected ray is cut by --bailout */
+        set_rgb(sheet.transmission, 0.999f, 0.999f, 0.999f); /* under 1/64 stop: nothing is lost */
+        params.width = params.height = 1;
+        params.sampling.count = late ? SAMPLES : 1;
+        params.bailout = 0.5;
+        add_object(scene, mesh_stack(SHEETS, corners, 1, 1e-4f), sheet, 0, 0, 0);
+        add_object(scene, mesh_box(4, 0.1, 4), clear, late ? 2.1 : 0, 0, 0);
+        for (int i = 0; i < LIGHTS; ++i)
+            scene_put_sun(scene, 0, -1, 0, 0.1f);
+        own_fixture f = fixture_open(scene, NULL, &params);
+        params.classes = WHIT_CLASSES_ONE;
+        own_renderer apart = fixture_beside(&f, &params);
+        own_picture a = render_picture(&f), b = render_picture(&apart);
+        print_message("  %" PRIu64 " shadow rays, %g\n", b.stats.rays_shadow, b.color.pixels[0]);
+        assert_same_light(&a, &b);
+        assert_true(a.stats.weight_cut_bailout > 0);
+        assert_true(a.stats.rays_shadow < SAMPLES * LIGHTS);
+        assert_int_equal(is_direct(&f), !device_get_limits(f.device)->loop_limited);
+    }
 }
 
 /* Without lights there is nothing to trace, whatever effects are added. */
