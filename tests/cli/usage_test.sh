@@ -82,6 +82,7 @@ refuse 2 "unknown extension" "x.gif: pictures are" render "$CUBE" -o "$OUT/pictu
 refuse 2 "identities as PNG" "ids.png: hit identities are .exr" render "$CUBE" -o "$P" --ids "$OUT/ids.png"
 refuse 2 "--thumbnail of costs" "one picture of colours" render "$CUBE" -o "$P" --thumbnail 64 --view visits
 refuse 2 "--thumbnail 0" "from 1 to 4096" render "$CUBE" -o "$P" --thumbnail 0
+refuse 2 "--thumbnail with --size" "leave out --size" render "$CUBE" -o "$P" --thumbnail 64 --size 200x100
 refuse 2 "a dash as picture" "-o -: pictures go to files" render "$CUBE" -o -
 refuse 2 "a dash as identities" "--ids -: " render "$CUBE" -o "$P" --ids -
 refuse 2 "a dash as rays" "--input -: .*/dev/stdin" trace "$CUBE" --input - -o "$OUT/pictures/h"

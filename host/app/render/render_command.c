@@ -568,6 +568,8 @@ static bool read_all(struct job *job, struct cli_reader *reader, struct render_r
 {
     if (!cli_read(reader, request, &job->settings))
         return false;
+    if (request->thumbnail && settings_given(&job->settings, "size"))
+        return cli_misuse(reader, "--thumbnail has the size already: leave out --size");
     if (repeat_picture(reader, &request->repeat)) {
         struct part_place place;
         if (!repeat_read(job, reader, request, &request->repeat, argc, argv))
