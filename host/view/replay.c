@@ -72,8 +72,8 @@ static bool is_settled(const struct view *view, const struct engine_status *stat
     return window_is_settled(view->window) && width == chain.width && height == chain.height &&
            status->stage == view->status.stage &&
            status->change.number == view->status.change.number &&
-           strcmp(status->error, view->status.error) == 0 && !view->unasked && !view->dirty &&
-           !view->shot[0];
+           strcmp(status->error, view->status.error) == 0 && !view->unasked &&
+           !view_is_stale(view) && !view->shot[0];
 }
 
 /* Whether no prices are being measured, and all that were measured are drawn. */
@@ -82,7 +82,7 @@ static bool is_priced(struct view *view)
     if (!prices_are_still(view->prices))
         return false;
     view->dirty |= prices_have_news(view->prices);
-    return !view->dirty;
+    return !view_is_stale(view);
 }
 
 /* Whether the best picture is drawn and shown. While an animation plays this never happens, so
@@ -243,7 +243,7 @@ bool replay_choose(struct view *view)
     const char *label;
     float x, y;
     uint32_t i = 0;
-    if (!replay || replay->at == replay->list.count || view->dirty || view->quit)
+    if (!replay || replay->at == replay->list.count || view_is_stale(view) || view->quit)
         return false;
     const struct view_event *event = &replay->list.events[replay->at];
     if (event->kind != EVENT_CHOOSE)

@@ -486,7 +486,7 @@ bool ui_has_keys(const struct ui *)
     return ImGui::GetIO().WantTextInput;
 }
 
-bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
+bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds, bool settles)
 {
     if (!set_aside())
         return false;
@@ -499,6 +499,7 @@ bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds)
         layout.releases |= io.MouseDown[i] != ui->down[i];
         ui->pressed[i] = false;
     }
+    layout.again = settles ? layout.again : 0;
     ++layout.frame;
     layout.obstacle_count = 0;
     layout.kept_free.size = ImVec2(0.0f, 0.0f);
@@ -518,8 +519,8 @@ bool ui_end(struct ui *ui)
     return give_back(ui);
 }
 
-// At most AGAIN_MAX times, since numbers may change their width in every frame; but the release of
-// a button always needs another frame.
+// At most AGAIN_MAX times in a row, since numbers may change their width in every frame; but the
+// release of a button always needs another frame.
 bool ui_wants_again(const struct ui *)
 {
     return layout.releases || (layout.again > 0 && layout.again < AGAIN_MAX);

@@ -43,8 +43,10 @@ bool ui_has_mouse(const struct ui *ui);
 bool ui_close_menus(struct ui *ui);
 bool ui_has_keys(const struct ui *ui);
 
-/* Everything below is drawn between ui_begin and ui_end. False: no memory; there is no frame. */
-WHIT_CHECK bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds);
+/* Everything below is drawn between ui_begin and ui_end. `settles`: the frame is drawn only as
+   ui_wants_again said so, for nothing else has changed. False: no memory; there is no frame. */
+WHIT_CHECK bool ui_begin(struct ui *ui, uint32_t width, uint32_t height, double seconds,
+                         bool settles);
 /* True: it freed memory that many lines had needed. */
 bool ui_end(struct ui *ui);
 /* Whether another frame has to be drawn: panels found their sizes only in this one, or a mouse

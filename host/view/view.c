@@ -282,10 +282,10 @@ static whit_result keep_shot(struct view *view)
 static whit_result draw_window(struct view *view)
 {
     struct swapchain_info info;
-    bool shown = false, keep = view->shot[0] != '\0';
+    bool shown = false, keep = view->shot[0] != '\0', settles = view->unsettled && !view->dirty;
     double now_ms = view_now_ms(view);
     swapchain_get_info(view->swapchain, &info);
-    view->dirty = false;
+    view->dirty = view->unsettled = false;
     if (info.stale || info.width == 0 || view->resized) {
         view->resized = false;
         whit_result result = fit_window(view);
@@ -300,7 +300,7 @@ static whit_result draw_window(struct view *view)
         if (result != WHIT_OK || info.width == 0)
             return result;
     }
-    if (!ui_begin(view->ui, info.width, info.height, (now_ms - view->drawn_ms) * 1e-3))
+    if (!ui_begin(view->ui, info.width, info.height, (now_ms - view->drawn_ms) * 1e-3, settles))
         return log_failure(&view->log, WHIT_ERROR_MEMORY,
                            "out of memory for the figures of the window");
     const struct settings before = view->settings;
@@ -309,10 +309,8 @@ static whit_result draw_window(struct view *view)
         !settings_same(&before, &view->settings); /* changed by mouse: the engine has to be asked */
     if (ui_end(view->ui))
         platform_trim_heaps();
-    if (ui_wants_again(view->ui)) { /* panels find their sizes: a shot is taken later */
-        view->dirty = true;
-        keep = false;
-    }
+    view->unsettled = ui_wants_again(view->ui);
+    keep = keep && !view->unsettled; /* a shot is taken once panels have found their sizes */
     view->drawn_ms = now_ms;
     whit_result result = swapchain_show(view->swapchain, ui_draw, view->ui, keep, &shown);
     if (result == WHIT_OK)
@@ -335,6 +333,11 @@ bool view_plays(const struct view *view)
     return view->clock.playing && view->scene && view->scene->info.time_end_s > 0.0;
 }
 
+bool view_is_stale(const struct view *view)
+{
+    return view->dirty || view->unsettled;
+}
+
 double view_stands_ms(const struct view *view)
 {
     return view->moved_ms + MOVING_MS;
@@ -348,7 +351,7 @@ bool view_is_moving(const struct view *view)
 static double wait_seconds(struct view *view, bool goes_on)
 {
     double wait = IDLE_S, now_ms = view_now_ms(view);
-    if (view->dirty || goes_on)
+    if (view_is_stale(view) || goes_on)
         return 0.0;
     if (now_ms < view_stands_ms(view))
         wait = fmin(wait, (view_stands_ms(view) - now_ms) * 1e-3);
@@ -435,7 +438,7 @@ static whit_result step(struct view *view)
     ask(view); /* settings that failed may have been undone */
     if (view->params->frames > 0 && view->picture_set)
         view->dirty = true; /* draws on until params->frames pictures were shown */
-    if (result == WHIT_OK && view->dirty)
+    if (result == WHIT_OK && view_is_stale(view))
         result = draw_window(view);
     return result == WHIT_OK && replay_choose(view) ? draw_click(view) : result;
 }

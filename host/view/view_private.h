@@ -100,7 +100,8 @@ struct view {
     char toast[TOAST_BYTES];
     double toast_until_ms;
     double progress_ms; /* when the progress bar was last drawn, by the system's clock */
-    bool dirty;         /* the window has to be drawn again */
+    bool dirty;         /* the window has to be drawn again, as what it shows has changed */
+    bool unsettled;     /* or for its panels alone: ui_wants_again */
     bool resized;       /* the images of the window have to be made again */
     bool quit;
     uint32_t shown; /* number of pictures shown */
@@ -145,6 +146,8 @@ struct settings view_drawn(const struct view *view, const struct settings *setti
    paths, each byte of them quoted as \xNN. */
 enum { VIEW_LINE = 1 << 16 };
 void view_line(const struct view *view, char line[VIEW_LINE]);
+/* Whether the window has to be drawn again. */
+bool view_is_stale(const struct view *view);
 /* Whether quick pictures are wanted, since something moves. */
 bool view_is_moving(const struct view *view);
 /* When quick pictures end if nothing is moved any more, by view_now_ms. */

@@ -104,5 +104,12 @@ full: press F2, press Tab
 few: press F2 x2
 again: press Tab x2 | panels.figures as few | panels.Settings as few
 END
+
+    # Each press changes a panel. The window is then drawn often enough that one in place of another can be clicked.
+    presses=$(printf 'press 1, wait 1, press 3, wait 1, %.0s' 1 2 3 4 5)
+    play "a panel after many changes" "$CUBE" --size 320x320 --ui-scale 0.5 <<END
+before: press X
+goal: ${presses}press X, press Tab, choose fps goal | fps_goal not as before | picked = false
+END
 fi
 finish

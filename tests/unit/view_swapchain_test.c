@@ -72,7 +72,7 @@ static whit_result set_picture(struct shop *shop)
 
 static whit_result show_text(struct shop *shop, bool *shown)
 {
-    assert_true(ui_begin(shop->ui, WIDTH, HEIGHT, 0.01));
+    assert_true(ui_begin(shop->ui, WIDTH, HEIGHT, 0.01, false));
     ui_rectangle(1, 1, 9, 9, 0xFFFFFFFFu);
     if (ui_panel_begin("text", 0, 0, UI_PANEL_STAYS))
         ui_text("text");
