@@ -123,7 +123,8 @@ struct engine_reload {
     struct difference difference;
     bool has_flip; /* `flip`: the mean over all pixels */
     double flip;
-    bool over; /* nothing more will be measured */
+    bool over;    /* nothing more will be measured */
+    bool stopped; /* something else was asked for before that */
     /* Time by which a whole picture takes longer, from pairs drawn in turns; count 0: not
        measured. */
     struct sample_median ms;

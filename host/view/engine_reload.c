@@ -124,7 +124,7 @@ void engine_reload_stop(struct engine *engine)
 {
     if (engine->status.reload.number == 0 || engine->status.reload.over)
         return;
-    engine->reloading.turns.stopped = true;
+    engine->reloading.turns.stopped = engine->status.reload.stopped = true;
     if (engine->timing == &engine->reloading.turns)
         engine->drawing->cancel = true;
     else

@@ -233,7 +233,8 @@ static void tell(struct view *view, const struct engine_reload *reload)
     shaders->wait.goes_on = false;
     shaders_say(reload, &shaders->wait, shaders->line);
     log_info(&view->log, "%s: %s", name, shaders->line);
-    if (reload->ms.count > 0 || !view->toast[0]) /* a message of the key that ended it stays */
+    /* A message of the key that ended it stays. */
+    if ((reload->ms.count > 0 && !reload->stopped) || !view->toast[0])
         view_say(view, "%s: %s", name, shaders->line);
 }
 
