@@ -36,7 +36,7 @@ endfunction()
 
 # Headers that belong to no module's library column: C11, POSIX, C++.
 set(system_headers assert complex ctype dirent dlfcn errno fcntl fenv float fnmatch ftw getopt glob immintrin inttypes
-  iso646 limits locale malloc math poll pthread setjmp signal spawn stdalign stdarg stdatomic stdbool stddef
+  iso646 limits locale malloc math poll pthread sched setjmp signal spawn stdalign stdarg stdatomic stdbool stddef
   stdint stdio stdlib stdnoreturn string strings tgmath threads time uchar unistd wchar wctype
   cstdarg cstdio cstdlib cstring exception new unordered_map vector)
 

@@ -1,5 +1,5 @@
 /* Functions that POSIX has and C does not. A port to another system would change platform.c,
-   child.c, sandbox.c, file.c, clock.c and threads.c. */
+   child.c, sandbox.c, file.c, clock.c, cores.c and threads.c. */
 #ifndef BASE_PLATFORM_H
 #define BASE_PLATFORM_H
 

@@ -341,6 +341,8 @@ whit_result commands_submit_between(struct commands *commands, VkSemaphore wait,
         LAYERS_BESIDE(device->end_label(commands->vk));
     commands->state = COMMANDS_IDLE;
     pthread_mutex_lock(&device->queue_lock);
+    if (device->spreads_left > 0)
+        device->spreads_left = cores_spread(device->threads) ? 0 : device->spreads_left - 1;
     VK_TRY(device, vkEndCommandBuffer(commands->vk));
     VK_TRY(device, vkResetFences(device->vk, 1, &commands->fence));
     const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;

@@ -127,6 +127,10 @@ static whit_result logical_create(struct device *device)
     return WHIT_OK;
 }
 
+/* Submissions that look for the driver's threads: until they run, they may lack names of their own.
+ */
+enum { SPREADS = 4 };
+
 whit_result device_create(const whit_log *log, const whit_device_params *params,
                           const struct device_surface *surface, struct device **out)
 {
@@ -154,6 +158,8 @@ whit_result device_create(const whit_log *log, const whit_device_params *params,
 
     /* Loading drivers takes locks that a child forked meanwhile would find held for ever. */
     child_hold_forks();
+    char before[CORES_NAME_BYTES];
+    cores_name_threads(device->threads, before);
     whit_result result = instance_create(device);
     device->surface_source = NULL;
     if (result == WHIT_OK)
@@ -162,6 +168,9 @@ whit_result device_create(const whit_log *log, const whit_device_params *params,
         result = check_room(device);
     if (result == WHIT_OK)
         result = logical_create(device);
+    cores_end_names(before);
+    if (device->info.kind == WHIT_DEVICE_CPU)
+        device->spreads_left = SPREADS;
     if (result == WHIT_OK)
         result = cache_open(device);
     child_release_forks();

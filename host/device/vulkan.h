@@ -20,6 +20,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include "base/cores.h"
 #include "device/layers.h"
 #include "device/pipeline.h"
 #include "device/specialize.h"
@@ -59,6 +60,9 @@ struct device {
     VkDevice vk;
     VkQueue queue; /* a device that shows pictures is used by one thread */
     pthread_mutex_t queue_lock;
+    char threads[CORES_NAME_BYTES]; /* name of the driver's threads that have no other */
+    uint32_t
+        spreads_left; /* so many submissions still try to spread these threads over the cores */
     uint32_t queue_family;
     uint64_t timestamp_mask; /* 0: the queue has none */
     VkPipelineCache cache;

@@ -1,9 +1,13 @@
+#define _GNU_SOURCE /* sched_getaffinity */
+#include <sched.h>
+
 #include <vulkan/vulkan_core.h>
 
 #include "affine_fixture.h"
 #include "one_device_fixture.h"
 
 #include "../wrapped.h"
+#include "base/cores.h"
 #include "device/buffer.h"
 #include "device/commands.h"
 #include "device/pipeline.h"
@@ -22,6 +26,17 @@ WRAPPED(whit_result, spirv_evaluate, const uint32_t *words, size_t word_count, c
     return cannot_specialize
                ? WHIT_ERROR_INPUT
                : __real_spirv_evaluate(words, word_count, spec, spec_count, out, out_words);
+}
+
+/* Calls of cores_spread, and how many found the driver's threads (-Wl,--wrap). */
+static uint32_t spreads_tried, spreads_done;
+
+WRAPPED(bool, cores_spread, const char name[CORES_NAME_BYTES])
+{
+    bool done = __real_cores_spread(name);
+    ++spreads_tried;
+    spreads_done += done;
+    return done;
 }
 
 /* Runs a kernel with these constants and checks its results; gives the pipeline's info. */
@@ -75,6 +90,23 @@ TEST_IN(kernels_go_to_the_driver_whole, NULL, specialize_again)
     assert_int_equal(info.bindings, 1);
     assert_false(pipeline_count(&params, &info));
     check_constants(spec, 5);
+}
+
+/* Other tests of this program have submitted work, and none is left to be found. */
+TEST(threads_of_lavapipe_have_cores_of_their_own)
+{
+    const whit_device_info *info = device_get_info(device);
+    cpu_set_t cores;
+    assert_int_equal(sched_getaffinity(0, sizeof cores, &cores), 0);
+    if (info->kind != WHIT_DEVICE_CPU || CPU_COUNT(&cores) < 2 || getenv("LP_NUM_THREADS"))
+        skip();
+    const uint32_t spec[3] = {64, 3, 7};
+    for (int i = 0; i < 4; ++i)
+        check_constants(spec, 1);
+    uint32_t tried = spreads_tried;
+    assert_int_equal(spreads_done, 1);
+    check_constants(spec, 1);
+    assert_int_equal(spreads_tried, tried);
 }
 
 TEST(texels_equal_storage)
