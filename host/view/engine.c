@@ -101,7 +101,9 @@ static bool plan_lane(struct engine *engine, struct engine_lane *lane, struct en
         return false;
     task->session = engine_find_session(engine, &lane->settings);
     if (task->session) {
-        if (task->session != lane->session)
+        /* While the picture moves, a new version of the shader is expected to take as long. */
+        if (task->session != lane->session &&
+            !(lane->moving && engine_same_but_version(&lane->last, &lane->settings)))
             lane->pace = (struct pace){0};
         engine_plan(engine, lane, task);
         follow_size(engine, lane, task);

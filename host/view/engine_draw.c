@@ -42,8 +42,10 @@ static uint32_t choose_divisor(const struct engine *engine, const struct engine_
 {
     double budget_ms =
         engine->params.budget_ms > 0.0 ? engine->params.budget_ms : BUDGET_DEFAULT_MS;
-    if (engine->lanes[1].wanted)
-        budget_ms *= 0.5; /* two pictures share it */
+    bool compiles_beside =
+        engine->job && lane->session && lane->session->device_info.kind == WHIT_DEVICE_CPU;
+    if (engine->lanes[1].wanted || compiles_beside)
+        budget_ms *= 0.5; /* two pictures share it, or a picture and the driver's compiler */
     return pace_divisor(&lane->pace, budget_ms / pixels_of(&lane->settings));
 }
 

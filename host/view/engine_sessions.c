@@ -74,7 +74,7 @@ static void run_job(void *context)
     struct engine_job *job = context;
     struct engine *engine = job->engine;
     const struct session_parts parts = {job->scene, job->shader, engine->params.compiler,
-                                        job->is_spare};
+                                        job->is_spare, job->moves};
     const whit_log log = {session_message, job->session, WHIT_LOG_WARNING};
     const whit_log scene_log = {scene_message, engine, WHIT_LOG_WARNING};
     whit_result result = job->reloads
@@ -200,6 +200,7 @@ bool engine_start_job(struct engine *engine, const struct settings *settings, bo
         job->session = session;
         job->reloads = version != NULL;
         job->is_spare = is_spare;
+        job->moves = engine->lanes[0].moving;
         job->settings = *settings;
         job->engine = engine;
         job->start_ms = whit_clock_ms();

@@ -15,6 +15,7 @@ struct engine_job {
     struct shader_ref *shader;
     bool reloads;  /* the session has drawn before, with another version of the shader */
     bool is_spare; /* a session for the next version of the shader, made in advance */
+    bool moves;    /* the window's picture moved when it began: no preview is drawn */
     struct engine_frame preview; /* the first step of its picture; without pixels: none */
     struct thread *thread;
     struct engine *engine;

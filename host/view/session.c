@@ -300,7 +300,9 @@ whit_result session_reload(struct session *session, const struct settings *setti
     whit_renderer_params params = session_picture(session);
     params.shader = session->shader->shader;
     params.sampling = (whit_sampling){.kind = WHIT_SAMPLING_FIXED, .count = 1};
-    params.step_spacing = FIRST_STEP;
+    params.step_spacing = parts->moves ? 0 : FIRST_STEP;
+    params.width = parts->moves ? WARM_WIDTH : params.width;
+    params.height = parts->moves ? WARM_HEIGHT : params.height;
     params.reuse_rays = true;
     params.few_pixels = true;
     params.step_aov = shader_ref_find_aov(session->shader, session->settings.aov) + 1;

@@ -93,6 +93,7 @@ struct session_parts {
     struct shader_ref *shader;
     whit_shader_compiler *compiler;
     bool awaits_version; /* made for the next version of the shader: it draws nothing before */
+    bool moves;          /* no step of the picture is wanted, since other pictures are drawn */
 };
 
 /* The parameters of a picture with the session's settings, which they borrow. */
@@ -105,7 +106,8 @@ WHIT_CHECK whit_result session_open(struct session *session, const struct settin
                                     const whit_log *scene_log);
 /* Adapts a session to another version of the shader. `settings` differ from the session's only in
    what its renderer can change. Compiles that version, and draws the first step of the picture,
-   since drivers compile then; session->step gets it. If the shader is wrong, or no camera can be
+   since drivers compile then; session->step gets it. If the view moves, a small picture is drawn
+   instead. If the shader is wrong, or no camera can be
    chosen, the session stays as it was. If its kernels cannot be made, the session has no renderer
    and has to be closed. */
 WHIT_CHECK whit_result session_reload(struct session *session, const struct settings *settings,
