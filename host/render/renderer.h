@@ -90,9 +90,10 @@ enum stage {
     STAGE_SHADOW_LATER,
     STAGE_RESOLVE, /* generation 0: the sums go into the pixels */
     STAGE_RESOLVE_LATER,
-    STAGE_MISS,  /* a user's miss() */
-    STAGE_SHAPE, /* a user's intersect(), before rays go through the trees */
-    STAGE_HIT,   /* a user's surface() and shade(), at hits */
+    STAGE_MISS,        /* a user's miss() */
+    STAGE_SHAPE,       /* a user's intersect(), before rays go through the trees */
+    STAGE_SHAPE_LIGHT, /* the same for shadow rays */
+    STAGE_HIT,         /* a user's surface() and shade(), at hits */
     /* HIT_PART_FETCH and HIT_PART_CALL: they stand in for STAGE_HIT until its kernel is made. */
     STAGE_HIT_FETCH,
     STAGE_HIT_CALL,

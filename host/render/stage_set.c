@@ -50,6 +50,8 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
                          (!part || splits) && (i != STAGE_HIT || !splits) &&
                          (i != STAGE_MISS || shader_has(shader, WHIT_HOOK_MISS)) &&
                          (i != STAGE_SHAPE || shader_has(shader, WHIT_HOOK_INTERSECT)) &&
+                         (i != STAGE_SHAPE_LIGHT || (shader_has(shader, WHIT_HOOK_INTERSECT) &&
+                                                     job->asks && spec->SPEC_SHADOWS)) &&
                          (i != STAGE_HIT || shader_has(shader, WHIT_HOOK_SURFACE) ||
                           shader_has(shader, WHIT_HOOK_SHADE)) &&
                          (i != STAGE_AOV || spec->SPEC_AOVS > 0) &&
@@ -176,8 +178,8 @@ static void drop_same(const struct stages_job *was, struct stages_job *job)
 {
     /* These stages have functions of the user's file. A change of one function may renumber the
        SPIR-V ids in the kernels of the others. */
-    static const enum stage own[] = {STAGE_SHAPE, STAGE_HIT,  STAGE_HIT_CALL,
-                                     STAGE_AOV,   STAGE_MISS, STAGE_POST};
+    static const enum stage own[] = {STAGE_SHAPE, STAGE_SHAPE_LIGHT, STAGE_HIT, STAGE_HIT_CALL,
+                                     STAGE_AOV,   STAGE_MISS,        STAGE_POST};
     for (int i = 0; i < STAGE_COUNT; ++i) {
         bool closely = false;
         for (size_t k = 0; k < sizeof own / sizeof *own; ++k)

@@ -53,10 +53,9 @@ static uint32_t row_of(enum stage stage, uint32_t list)
         [STAGE_SHADOW] = RENDER_STAGE_SHADOW,      [STAGE_SHADE_GLASS] = RENDER_STAGE_SHADE_GLASS,
         [STAGE_SHADE_DIRECT] = RENDER_STAGE_SHADE, [STAGE_SHADOW_LATER] = RENDER_STAGE_SHADOW,
         [STAGE_RESOLVE] = RENDER_STAGE_RESOLVE,    [STAGE_RESOLVE_LATER] = RENDER_STAGE_RESOLVE,
-        [STAGE_SHAPE] = RENDER_STAGE_CAMERA,       [STAGE_POST] = RENDER_STAGE_RESOLVE,
+        [STAGE_SHAPE] = RENDER_STAGE_CAMERA,       [STAGE_SHAPE_LIGHT] = RENDER_STAGE_SHADOW,
+        [STAGE_POST] = RENDER_STAGE_RESOLVE,
     };
-    if (stage == STAGE_SHAPE && list != LIST_RAYS)
-        stage = STAGE_SHADOW;
     if (stage >= STAGE_HIT && stage <= STAGE_AOV)
         return RENDER_STAGE_SHADE + (list - LIST_HITS);
     return rows[stage] + (rows[stage] == RENDER_STAGE_SHADOW ? list - LIST_LIGHTS : 0);
@@ -216,7 +215,6 @@ static whit_result record_lights(struct tile_run *run)
 {
     const struct renderer *renderer = run->target->renderer;
     bool camera = run->chunk.generation == 0, by_light = renderer->frame.light_count <= LIGHT_LISTS;
-    bool shadows = renderer_compiles(renderer, SCENE_EFFECT_SHADOWS);
     whit_result result = WHIT_OK;
     const struct stage_set *set = &run->target->stages.set;
     bool asks = lights_directly(run) ? set->asks_directly : set->asks;
@@ -226,8 +224,7 @@ static whit_result record_lights(struct tile_run *run)
         uint32_t list = LIST_LIGHTS + (by_light ? i : 0);
         run->chunk.light = i;
         run->chunk.lights = lights - i < each ? lights - i : each;
-        if (shadows)
-            result = dispatch_own(run, STAGE_SHAPE, list);
+        result = dispatch_own(run, STAGE_SHAPE_LIGHT, list);
         if (result == WHIT_OK)
             result = dispatch(run, camera ? STAGE_SHADOW : STAGE_SHADOW_LATER, list);
         run->dispatches += each - 1;

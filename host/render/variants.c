@@ -531,6 +531,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
         [STAGE_RESOLVE_LATER] = {&kernels[KERNEL_RESOLVE], "resolve later", false, 2},
         [STAGE_MISS] = {&hook_kernels[HOOK_KERNEL_MISS], "miss", false, 3},
         [STAGE_SHAPE] = {&hook_kernels[HOOK_KERNEL_SHAPE], "shape", false, 3},
+        [STAGE_SHAPE_LIGHT] = {&hook_kernels[HOOK_KERNEL_SHAPE], "shape, lights", false, 3},
         [STAGE_HIT] = {&hook_kernels[HOOK_KERNEL_HIT], "hit", false, 3},
         [STAGE_HIT_FETCH] = {&hook_kernels[HOOK_KERNEL_HIT], "hit, fetched", false, 3},
         [STAGE_HIT_CALL] = {&hook_kernels[HOOK_KERNEL_HIT], "hit, called", false, 3},
@@ -543,6 +544,7 @@ void variant_job_init(const struct target *target, const struct gpu_spec *set_sp
     memcpy(job->kinds, bindings.kinds, sizeof job->kinds);
     spec->SPEC_SETTLES |= !stages[stage].deferred;
     spec->SPEC_DIRECT = stage == STAGE_SHADE_DIRECT;
+    spec->SPEC_ANY_HIT = stage == STAGE_SHAPE_LIGHT;
     if (stages[stage].kernel == &kernels[KERNEL_SHADE] && !shading_traces(target, spec)) {
         spec->SPEC_NUMERICS = NUMERICS_WATERTIGHT;
         spec->SPEC_SETTLES = 1;

@@ -113,7 +113,7 @@ typedef struct whit_statistic {
     char name[64];
     double value;
 } whit_statistic;
-enum { WHIT_STATISTICS_MAX = 48, WHIT_KERNELS_MAX = 32 };
+enum { WHIT_STATISTICS_MAX = 48, WHIT_KERNELS_MAX = 34 };
 /* A kernel of a picture as the device's driver makes it. */
 typedef struct whit_kernel {
     const char *name;      /* of its stage: "camera", "shade glass" */

@@ -97,7 +97,7 @@
     X(1, SPEC_LOAD_PATH, 0)           /* LOAD_* */                                                 \
     X(2, SPEC_STACK_SIZE, 64)         /* node stack entries, from the depth of the built trees */  \
     X(3, SPEC_INSTANCED, 1)           /* 0: one mesh, not moved: no instance tree, no transform */ \
-    X(4, SPEC_ANY_HIT, 0)             /* ray batch kernel: any hit instead of the closest */       \
+    X(4, SPEC_ANY_HIT, 0)             /* any hit, not the closest: ray batches, shapes */       \
     X(5, SPEC_INTERLEAVE, 0)          /* workgroups interleaved: lavapipe halves their ids */      \
     X(6, SPEC_SECONDARY, 1)           /* rays call for further rays */                             \
     X(7, SPEC_SHADOWS, 1)                                                                          \

@@ -29,17 +29,25 @@ void aim_at_light(Lit lit, LightSample light, inout Arrival a)
     }
 }
 
-Arrival arrive(bool alive, Lit lit, gpu_light light, uint point)
+// Aims the shadow ray to a point of the light, and sets what does not depend on the material. True: the
+// light arrives on a side of the surface that receives it.
+bool aim_from_surface(bool alive, Lit lit, gpu_light light, uint point, out LightSample at, out Arrival a)
 {
-    LightSample at;
     bool arrives = light_at(light, point, lit.p, at);
-    Arrival a;
     a.cos_light = dot(at.to_light, lit.ns);
     a.faces = alive && arrives && a.cos_light > 0.0;
     a.strength = at.strength;
     a.arriving = at.arriving;
     a.above = dot(at.to_light, lit.ng) > 0.0;
-    bool wanted = a.faces && (a.above || (SPEC_TERMINATOR != 0u && (lit.flags & LIT_LIFTED) != 0u));
+    aim_at_light(lit, at, a);
+    return a.faces && (a.above || (SPEC_TERMINATOR != 0u && (lit.flags & LIT_LIFTED) != 0u));
+}
+
+Arrival arrive(bool alive, Lit lit, gpu_light light, uint point)
+{
+    LightSample at;
+    Arrival a;
+    bool wanted = aim_from_surface(alive, lit, light, point, at, a);
     a.highlight = vec3(0.0);
     a.reflected = lit.diffuse * a.cos_light;
     if (SPEC_HIGHLIGHTS != 0u) {
@@ -54,7 +62,6 @@ Arrival arrive(bool alive, Lit lit, gpu_light light, uint point)
     }
     // NaN counts as wanted too, since it must show in the picture.
     a.wanted = wanted && !(a.reflected.r + a.reflected.g + a.reflected.b <= frame.bailout_shadow);
-    aim_at_light(lit, at, a);
     return a;
 }
 

@@ -40,7 +40,8 @@ ShapeRay generation_ray()
     return asked;
 }
 
-// The shadow ray from the invocation's lit hit `r` to a point of the light.
+// The shadow ray from the invocation's lit hit `r` to a point of the light, whether or not the surface
+// reflects enough of the light to be traced: that is not worth the material's rows here.
 ShapeRay shadow_ray(gpu_light light, uint r, uint rays, uint point)
 {
     uint place = gl_LocalInvocationID.x + r * SPEC_GROUP_SIZE;
@@ -50,50 +51,60 @@ ShapeRay shadow_ray(gpu_light light, uint r, uint rays, uint point)
     asked.at = asked.alive ? item : 0u;
     uint index = fetch_listed_lit(asked.at);
     Lit lit = fetch_lit(asked.alive ? index : 0u);
-    Arrival a = arrive(asked.alive, lit, light, point);
+    LightSample at;
+    Arrival a;
+    asked.alive = aim_from_surface(asked.alive, lit, light, point, at, a);
     uint slot;
     hook_ray = fetch_ray(lit.id, slot);
     hook_ray.origin = lit.origin;
     hook_ray.dir = a.dir;
     hook_pixel = slot_pixel(slot);
-    asked.alive = a.wanted;
     asked.origin = lit.origin;
     asked.dir = a.dir;
     asked.t_max = a.distance;
     return asked;
 }
 
-// One loop serves both kinds of rays, so that the user's function is in the kernel only once.
-void main()
+Hit meet_shape(ShapeRay asked)
 {
-    load_frame();
-    begin_functions();
-    bool to_light = SPEC_SHADOWS != 0u && SPEC_LIGHTS != 0u && chunk.list != LIST_RAYS;
-    gpu_light light = fetch_light(to_light ? chunk.light : 0u);
-    uint rays = to_light && is_primary() ? SPEC_LIT_RAYS : 1u;
-    uint points = to_light && is_flat(light) ? turns_each() : 1u;
+    Hit hit = make_hit(asked.t_max);
+    add_shape(asked.origin, asked.dir, asked.alive && is_usable(asked.origin, asked.dir), hit);
+    return hit;
+}
+
+// Asks for each point of the light.
+void ask_to_light()
+{
+    gpu_light light = fetch_light(chunk.light);
+    uint rays = is_primary() ? SPEC_LIT_RAYS : 1u, points = is_flat(light) ? turns_each() : 1u;
     uint turn = 0u, shadows = 0u;
     bool more = false;
     do {
         uint r = turn / points, point = turn - r * points;
-        ShapeRay asked;
-        if (to_light)
-            asked = shadow_ray(light, r, rays, point);
-        else
-            asked = generation_ray();
-        Hit hit = make_hit(asked.t_max);
-        add_shape(asked.origin, asked.dir, asked.alive && is_usable(asked.origin, asked.dir), hit);
-        bool met = hit.primitive != HIT_NONE;
-        if (!to_light && asked.alive)
-            store_shape(asked.at, hit);
+        ShapeRay asked = shadow_ray(light, r, rays, point);
+        bool met = meet_shape(asked).primitive != HIT_NONE;
         shadows = (point & 31u) == 0u ? uint(met) : shadows | uint(met) << (point & 31u);
-        if (to_light && asked.alive)
+        if (asked.alive)
             store_shape_shadows(asked.at, point >> 5, shadows);
         turn++;
         more = turn < rays * points;
     } while (another_iteration(more));
     if (more)
         report_status(STATUS_UNFINISHED_LOOP);
+}
+
+void main()
+{
+    load_frame();
+    begin_functions();
+    if (SPEC_ANY_HIT != 0u) {
+        ask_to_light();
+    } else {
+        ShapeRay asked = generation_ray();
+        Hit hit = meet_shape(asked);
+        if (asked.alive)
+            store_shape(asked.at, hit);
+    }
     report_status(hook_status);
     tally_traced(hook_traced);
     report_hooks();
