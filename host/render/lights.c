@@ -83,3 +83,12 @@ uint32_t lights_samples(const struct renderer *renderer)
                 (lights_kinds(&renderer->pose) & LIGHT_FLAT_BITS) != 0;
     return !flat ? 1 : asked ? asked : SAMPLES_DEFAULT;
 }
+
+uint32_t lights_points(const struct renderer *renderer, uint32_t each)
+{
+    const struct scene_pose *pose = &renderer->pose;
+    uint32_t points = 0;
+    for (uint32_t i = 0; i < pose->light_count && i < LIGHT_LISTS; ++i)
+        points += scene_light_is_flat(&pose->lights[i]) ? each : 1;
+    return points;
+}

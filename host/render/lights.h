@@ -10,5 +10,7 @@ WHIT_CHECK whit_result lights_write(struct renderer *renderer);
 uint32_t lights_kinds(const struct scene_pose *pose);
 /* The number of points sampled on each flat emitter; 1 where the pose has none. */
 uint32_t lights_samples(const struct renderer *renderer);
+/* The number of points of the first LIGHT_LISTS lights, where a flat emitter has `each`. */
+uint32_t lights_points(const struct renderer *renderer, uint32_t each);
 
 #endif

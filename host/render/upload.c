@@ -348,8 +348,9 @@ static whit_result upload_shading(struct renderer *renderer)
 
 /* Kernels for packets of 2 rays a lane take `kernels_ns` of processor time longer to make than
    those for single rays. Each ray then takes `saved_ns` less for every halving of the tree's
-   records beyond PACKETS_HALVINGS. The row for 4 rays compares with 2 likewise. Measured, see
-   docs/performance.md. */
+   records beyond PACKETS_HALVINGS. The row for 4 rays compares with 2 likewise, and counts the rays
+   to half of the points of an area light, as a pixel traces about as many: by these, packets of 2
+   would be chosen for small pictures, which lose by them. Measured, see docs/performance.md. */
 static const struct {
     uint32_t rays;
     double kernels_ns, saved_ns;
@@ -385,15 +386,14 @@ static uint32_t choose_packet_rays(const struct renderer *renderer)
 {
     const whit_renderer_params *params = &renderer->params;
     const struct accel *accel = renderer->accel;
-    double lights = fmin((double)renderer->pose.light_count, (double)LIGHT_LISTS);
-    double rays = (double)params->width * views_picture_rows(renderer) * params->sampling.count *
-                  (1.0 + lights);
+    double pixels = (double)params->width * views_picture_rows(renderer) * params->sampling.count;
     double halvings = same_log2((double)accel->record_count + 1.0) - PACKETS_HALVINGS;
-    uint32_t chosen = 1;
+    uint32_t chosen = 1, area = (lights_samples(renderer) + 1) / 2;
     for (size_t i = 0; i < sizeof packet_choices / sizeof *packet_choices; ++i) {
+        double rays = pixels * (1.0 + lights_points(renderer, i ? area : 1));
         bool pays = rays * halvings * packet_choices[i].saved_ns >= packet_choices[i].kernels_ns;
         bool many = params->compile_async || (params->many_pictures && i == 0);
-        if (halvings > 0.0 && (pays || many))
+        if (halvings > 0.0 && ((pays && (i == 0 || chosen > 1)) || many))
             chosen = packet_choices[i].rays;
     }
     return accel->flat || accel->single_identity ? chosen : 1;

@@ -158,23 +158,31 @@ TEST_BY_TURNS(packets_are_chosen_where_they_pay, 3, 4)
     static const struct {
         uint32_t steps, side;
         bool instances, beside, many;
-        uint32_t rays; /* of a lane */
+        uint32_t points; /* of an area light; 0: a lamp */
+        uint32_t rays;   /* of a lane */
     } cases[] = {
-        {96, 16, false, false, false, 1},   {96, 1024, false, false, false, 2},
-        {96, 4096, false, false, false, 4}, {96, 1024, true, false, false, 1},
-        {96, 16, false, true, false, 4},    {96, 16, false, false, true, 2},
-        {4, 1024, false, false, false, 1},  {4, 16, false, true, false, 1},
-        {4, 16, false, false, true, 1},
+        {96, 16, false, false, false, 0, 1},   {96, 1024, false, false, false, 0, 2},
+        {96, 4096, false, false, false, 0, 4}, {96, 1024, true, false, false, 0, 1},
+        {96, 16, false, true, false, 0, 4},    {96, 16, false, false, true, 0, 2},
+        {4, 1024, false, false, false, 0, 1},  {4, 16, false, true, false, 0, 1},
+        {4, 16, false, false, true, 0, 1},     {96, 1024, false, false, false, 16, 4},
+        {96, 1024, false, false, false, 1, 2}, {96, 256, false, false, false, 0, 1},
+        {96, 256, false, false, false, 16, 1},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         const whit_renderer_params params = {.width = cases[i].side,
                                              .height = cases[i].side,
                                              .depth = 1,
                                              .compile_async = cases[i].beside,
-                                             .many_pictures = cases[i].many};
+                                             .many_pictures = cases[i].many,
+                                             .light_samples = cases[i].points};
         struct scene *scene = dark_scene((double[]){0, 9, 9}, (double[]){0, 0, 0});
         add_object(scene, mesh_terrain(8, 1, cases[i].steps, 1), material_plain("ground"), 0, 0, 0);
-        scene_put_lamp(scene, 3, 4, 3, 1);
+        if (cases[i].points)
+            scene_put_light(scene, emitter(WHIT_LIGHT_RECTANGLE, (double[]){-1, 4, -1},
+                                           (double[]){2, 0, 0}, (double[]){0, 0, 2}, 1));
+        else
+            scene_put_lamp(scene, 3, 4, 3, 1);
         if (cases[i].instances)
             add_object(scene, mesh_box(1, 1, 1), material_plain("box"), 0, 3, 0);
         own_fixture f = fixture_open(scene, NULL, &params);
