@@ -23,6 +23,7 @@ struct watched {
        of the uppermost folder that is. */
     char *name;
     bool lacks_folder;
+    bool changed; /* an event about it was read since watch_changed was called last */
 };
 
 struct watch {
@@ -33,7 +34,13 @@ struct watch {
     struct watched *files;
     uint32_t count, capacity;
     bool missed; /* a file had changed before it was watched */
+    /* Files that had changed when watch_clear was called: nobody was told yet. */
+    char **untold;
+    uint32_t untold_count, untold_capacity;
 };
+
+static bool take_events(struct watch *watch);
+static void forget_untold(struct watch *watch);
 
 /* inotify merges an event with an equal one that is still unread, and then wakes nobody, as the
    epoll is edge-triggered. So the owner must read all events, by watch_changed, each time it is
@@ -89,6 +96,8 @@ void watch_destroy(struct watch *watch)
         (void)eventfd_write(watch->end, 1);
     thread_join(watch->thread);
     watch_clear(watch);
+    forget_untold(watch);
+    free(watch->untold);
     free(watch->files);
     close_open(watch->fd);
     close_open(watch->end);
@@ -96,18 +105,41 @@ void watch_destroy(struct watch *watch)
     free(watch);
 }
 
+static void forget_untold(struct watch *watch)
+{
+    while (watch->untold_count > 0)
+        free(watch->untold[--watch->untold_count]);
+}
+
+static bool is_untold(const struct watch *watch, const char *path)
+{
+    for (uint32_t i = 0; i < watch->untold_count; ++i) {
+        if (strcmp(watch->untold[i], path) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* Folders are let go before the last events are read, so that none comes in between; these events
+   may make others be watched. inotify_rm_watch works once per folder. */
 void watch_clear(struct watch *watch)
 {
     if (!watch)
         return;
+    for (uint32_t i = 0; i < watch->count; ++i)
+        (void)inotify_rm_watch(watch->fd, watch->files[i].folder);
+    (void)take_events(watch);
     for (uint32_t i = 0; i < watch->count; ++i) {
-        (void)inotify_rm_watch(watch->fd, watch->files[i].folder); /* works once per folder */
-        free(watch->files[i].path);
-        free(watch->files[i].name);
+        struct watched *file = &watch->files[i];
+        (void)inotify_rm_watch(watch->fd, file->folder);
+        if (!file->changed ||
+            !ARRAY_PUSH(watch->untold, watch->untold_count, watch->untold_capacity, file->path))
+            free(file->path);
+        free(file->name);
     }
     watch->count = 0;
     watch->missed = false;
-    (void)watch_changed(watch); /* discards earlier events */
+    (void)take_events(watch); /* drops what came of folders that were let go */
 }
 
 static int64_t to_ns(struct timespec time)
@@ -178,7 +210,7 @@ static void add_one(struct watch *watch, const char *path, int64_t since_ns)
         !ARRAY_PUSH(watch->files, watch->count, watch->capacity, file)) {
         free(file.path);
         free(file.name);
-    } else if (has_changed(path, since_ns)) {
+    } else if (is_untold(watch, path) || has_changed(path, since_ns)) {
         watch->missed = true;
         watch->wake(NULL);
     }
@@ -237,13 +269,14 @@ static void let_go(const struct watch *watch, int folder)
 
 static bool take_event(struct watch *watch, const struct inotify_event *event)
 {
-    bool changed = event->mask & IN_Q_OVERFLOW; /* nothing is known of events without room */
+    bool all = event->mask & IN_Q_OVERFLOW; /* nothing is known of events without room */
+    bool changed = all;
     for (uint32_t i = 0; i < watch->count; ++i) {
         struct watched *file = &watch->files[i];
-        if (!is_about(event, file))
+        if (!all && !is_about(event, file))
             continue;
-        changed = true;
-        if (file->lacks_folder || event->mask & (IN_MOVE_SELF | IN_DELETE_SELF))
+        changed = file->changed = true;
+        if (!all && (file->lacks_folder || event->mask & (IN_MOVE_SELF | IN_DELETE_SELF)))
             place(watch, file);
     }
     if (changed)
@@ -251,19 +284,29 @@ static bool take_event(struct watch *watch, const struct inotify_event *event)
     return changed;
 }
 
-bool watch_changed(struct watch *watch)
+static bool take_events(struct watch *watch)
 {
     _Alignas(struct inotify_event) char buffer[4096];
-    bool changed = watch && watch->missed;
+    bool changed = false;
     ssize_t bytes;
-    while (watch && (bytes = read(watch->fd, buffer, sizeof buffer)) > 0) {
+    while ((bytes = read(watch->fd, buffer, sizeof buffer)) > 0) {
         for (ssize_t at = 0; at < bytes;) {
             const struct inotify_event *event = (const void *)(buffer + at);
             changed = take_event(watch, event) || changed;
             at += (ssize_t)(sizeof *event + event->len);
         }
     }
-    if (watch)
-        watch->missed = false;
+    return changed;
+}
+
+bool watch_changed(struct watch *watch)
+{
+    if (!watch)
+        return false;
+    bool changed = take_events(watch) || watch->missed;
+    watch->missed = false;
+    for (uint32_t i = 0; i < watch->count; ++i)
+        watch->files[i].changed = false;
+    forget_untold(watch);
     return changed;
 }

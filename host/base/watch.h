@@ -17,9 +17,11 @@ void watch_destroy(struct watch *watch); /* NULL is fine */
    between `since_ns` and this call counts, too. */
 void watch_add(struct watch *watch, const char *path, int64_t since_ns);
 /* The time, to be taken before a file is read. Systems may date files by a clock that is some 10 ms
-   behind: a change in the first 10 ms after that is not told. */
+   behind: a change in the first 10 ms after that is told only if the file is watched already. */
 int64_t watch_now_ns(void);
-void watch_clear(struct watch *watch); /* stops watching all files */
+/* Stops watching all files. Changes that nobody was told of are told if watch_add adds their files
+   again before watch_changed is called. */
+void watch_clear(struct watch *watch);
 /* Whether a watched file was written and closed, or replaced by another file, or its folder came or
    went, or a link on the way to it was replaced (the new way is not watched), since the last call.
    Does not wait. */

@@ -52,7 +52,7 @@ TEST_IN(changes_before_it_was_watched_are_told, folder_begin, folder_end)
     assert_false(watch_changed(watch));
     moment();
     put_text("late.json", "1");
-    watch_clear(watch); /* loses the event */
+    watch_clear(watch);
     while (sem_trywait(&woken) == 0)
         continue;
     watch_add(watch, in_folder("late.json"), since_ns);
@@ -65,6 +65,36 @@ TEST_IN(changes_before_it_was_watched_are_told, folder_begin, folder_end)
     assert_true(watch_changed(watch));
     watch_add(watch, in_folder("a.json"), moment());
     assert_false(watch_changed(watch));
+    watch_destroy(watch);
+}
+
+/* The second save comes within the same tick of the clock of files as `since_ns`. */
+TEST_IN(changes_that_nobody_was_told_of_survive_a_clear, folder_begin, folder_end)
+{
+    struct watch *watch = watch_create(wake);
+    put_text("a.json", "1");
+    put_text("b.json", "1");
+    for (int times = 1; times <= 2; ++times) {
+        int64_t since_ns = watch_now_ns();
+        watch_add(watch, in_folder("a.json"), since_ns);
+        assert_false(watch_changed(watch));
+        put_text("a.json", "2");
+        int64_t after_ns = moment();
+        for (int i = 0; i < times; ++i)
+            watch_clear(watch);
+        watch_add(watch, in_folder("a.json"), after_ns);
+        assert_true(watch_changed(watch));
+        assert_false(watch_changed(watch));
+        put_text("a.json", "3");
+        moment();
+        watch_clear(watch);
+        watch_add(watch, in_folder("b.json"), watch_now_ns()); /* another one */
+        assert_false(watch_changed(watch));
+        watch_clear(watch);
+        watch_add(watch, in_folder("a.json"), watch_now_ns()); /* too late */
+        assert_false(watch_changed(watch));
+        watch_clear(watch);
+    }
     watch_destroy(watch);
 }
 
