@@ -58,6 +58,17 @@ static uint32_t find_named(const char *name, pid_t threads[THREADS_MAX])
     return count;
 }
 
+/* Whether all the threads may run on just these cores. */
+static bool may_run_on(const pid_t *threads, uint32_t count, const cpu_set_t *cores)
+{
+    cpu_set_t own;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (sched_getaffinity(threads[i], sizeof own, &own) != 0 || !CPU_EQUAL(&own, cores))
+            return false;
+    }
+    return true;
+}
+
 bool cores_spread(const char name[CORES_NAME_BYTES])
 {
     cpu_set_t cores, own;
@@ -65,7 +76,8 @@ bool cores_spread(const char name[CORES_NAME_BYTES])
     if (sched_getaffinity(0, sizeof cores, &cores) != 0)
         return false;
     uint32_t count = (uint32_t)CPU_COUNT(&cores);
-    if (count < 2 || count >= THREADS_MAX || find_named(name, threads) != count + 1)
+    if (count < 2 || count >= THREADS_MAX || find_named(name, threads) != count + 1 ||
+        !may_run_on(threads, count + 1, &cores))
         return false;
     for (size_t core = 0, i = 1; core < CPU_SETSIZE; ++core) {
         if (!CPU_ISSET(core, &cores))

@@ -86,6 +86,29 @@ TEST(each_thread_behind_the_first_gets_a_core)
     end(&crew);
 }
 
+/* As where the caller is bound to cores after it started the threads. */
+TEST(threads_with_cores_of_their_own_stay_there)
+{
+    cpu_set_t all = cores_of(0), first;
+    uint32_t count = (uint32_t)CPU_COUNT(&all);
+    struct crew crew;
+    size_t core = 0;
+    if (count < 2 || count >= MAX)
+        skip();
+    while (!CPU_ISSET(core, &all))
+        ++core;
+    CPU_ZERO(&first);
+    CPU_SET(core, &first);
+    start(&crew, count + 1);
+    assert_int_equal(sched_setaffinity(crew.ids[2], sizeof first, &first), 0);
+    assert_false(cores_spread(crew.name));
+    for (uint32_t i = 0; i <= count; ++i) {
+        cpu_set_t own = cores_of(crew.ids[i]);
+        assert_true(CPU_EQUAL(&own, i == 2 ? &first : &all));
+    }
+    end(&crew);
+}
+
 TEST(another_number_of_threads_stays_as_it_is)
 {
     cpu_set_t all = cores_of(0);
