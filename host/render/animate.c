@@ -43,8 +43,10 @@ static void passes_check(struct renderer *renderer)
     if (outgrown)
         renderer->node_stack_size = needed + STACK_SPARE;
     if (outgrown || accel->single_identity != renderer->single_identity ||
-        accel->clipped != renderer->clipped)
+        accel->clipped != renderer->clipped ||
+        upload_chooses_quantized(renderer) != renderer->quantized)
         passes_finish(renderer);
+    renderer->quantized = upload_chooses_quantized(renderer);
     renderer->single_identity = accel->single_identity;
     renderer->clipped = accel->clipped;
 }

@@ -30,7 +30,8 @@ struct scene_buffers {
     uint32_t environment_size, uv_sets;
     bool smooth_normals, colors; /* whether the shading rows hold them */
     bool texel_loads;
-    struct buffer *nodes8; /* nodes of eight children; NULL unless renderer->wide */
+    struct buffer *nodes8;    /* nodes of eight children; NULL unless renderer->wide */
+    struct buffer *quantized; /* struct gpu_quantized_node; NULL unless renderer->quantized */
     uint64_t bytes;
 };
 
@@ -238,6 +239,7 @@ struct renderer {
     uint32_t packet_rays; /* rays that each lane of a packet has */
     bool few_kernels;     /* one kernel for several stages and all materials: render_few_kernels */
     bool wide;            /* nodes of eight children are on the device */
+    bool quantized;       /* rays that are not in packets read nodes of 16 bytes */
     uint32_t
         tile; /* pixels on a side of the last tile that was drawn in little time; 0: none was */
     struct kept_picture kept;

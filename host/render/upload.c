@@ -5,6 +5,7 @@
 
 #include "accel/bvh8.h"
 #include "accel/pose.h"
+#include "accel/quantized.h"
 #include "base/array.h"
 #include "base/same.h"
 #include "device/buffer.h"
@@ -24,7 +25,8 @@ _Static_assert(SCENE_TREE_INSTANCE_BYTES >=
                    2 * (sizeof(struct gpu_instance) + 2 * sizeof(struct gpu_bvh_node)),
                "instances cost more than estimated");
 _Static_assert(SCENE_TREE_TRIANGLE_BYTES >=
-                   2 * (sizeof(struct gpu_triangle) + sizeof(struct gpu_bvh_node) / 2),
+                   2 * (sizeof(struct gpu_triangle) + sizeof(struct gpu_bvh_node) / 2 +
+                        sizeof(struct gpu_quantized_node) / 2),
                "triangles cost more than estimated");
 
 static bool fits_storage(const struct renderer *renderer)
@@ -114,6 +116,44 @@ static whit_result upload_nodes8(struct renderer *renderer)
     return result;
 }
 
+/* The tree that rays enter where they need no tree over instances. */
+static const struct accel_mesh *only_tree(const struct renderer *renderer)
+{
+    const struct accel *accel = renderer->accel;
+    if (accel->flat)
+        return &accel->meshes[0];
+    return accel->single_identity ? &accel->meshes[renderer->scene->instances[0].mesh] : NULL;
+}
+
+/* Nodes of 16 bytes are for lavapipe, where a node costs what its loads cost, and for trees that
+   are larger than a core's caches: in smaller ones the few steps of a ray do not save what it takes
+   to prepare. Tests choose them by WHIT_NODES, 16 or 32. */
+bool upload_chooses_quantized(const struct renderer *renderer)
+{
+    enum { NODES_MIN = 1 << 13 };
+    const struct accel_mesh *tree = only_tree(renderer);
+    const char *chosen = getenv("WHIT_NODES");
+    if (!tree || !renderer->scene_buffers.texel_loads || renderer->accel->no_trees ||
+        device_get_info(renderer->device)->kind != WHIT_DEVICE_CPU || !accel_can_quantize(tree))
+        return false;
+    return chosen ? strcmp(chosen, "16") == 0 : tree->node_count >= NODES_MIN;
+}
+
+static whit_result upload_quantized(struct renderer *renderer)
+{
+    if (!renderer->quantized)
+        return WHIT_OK;
+    const struct accel_mesh *tree = only_tree(renderer);
+    struct gpu_quantized_node *nodes = accel_quantize(renderer->accel, tree);
+    if (!nodes)
+        return render_no_memory(renderer, "nodes of 16 bytes");
+    uint64_t bytes = (uint64_t)(tree->first_node + tree->node_count) * sizeof *nodes;
+    whit_result result = store_words(renderer, nodes, bytes, "nodes of 16 bytes",
+                                     &renderer->scene_buffers.quantized);
+    free(nodes);
+    return result;
+}
+
 static whit_result upload_trees(struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;
@@ -121,6 +161,8 @@ static whit_result upload_trees(struct renderer *renderer)
     whit_result result =
         store_words(renderer, accel->nodes, (uint64_t)accel->node_count * sizeof *accel->nodes,
                     "nodes", &buffers->nodes);
+    if (result == WHIT_OK)
+        result = upload_quantized(renderer);
     if (result == WHIT_OK)
         result = upload_nodes8(renderer);
     if (result == WHIT_OK)
@@ -438,6 +480,7 @@ void upload_choose(struct renderer *renderer)
 {
     renderer->scene_buffers.texel_loads = choose_texel_loads(renderer);
     renderer->packets = renderer->wide = choose_packets(renderer);
+    renderer->quantized = upload_chooses_quantized(renderer);
 }
 
 whit_result upload_scene(struct renderer *renderer)
@@ -477,9 +520,9 @@ whit_result upload_pose(struct renderer *renderer)
 void upload_finish(struct scene_buffers *buffers)
 {
     struct buffer *all[] = {
-        buffers->nodes,     buffers->nodes8,  buffers->triangles,
-        buffers->instances, buffers->shading, buffers->environment,
-        buffers->texels,    buffers->frame,   buffers->none,
+        buffers->nodes,     buffers->nodes8,  buffers->quantized,   buffers->triangles,
+        buffers->instances, buffers->shading, buffers->environment, buffers->texels,
+        buffers->frame,     buffers->none,
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         buffer_destroy(all[i]);

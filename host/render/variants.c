@@ -110,6 +110,10 @@ static struct gpu_spec make_spec(const struct target *target, const struct scene
     spec.SPEC_FLAT = accel->flat;
     spec.SPEC_CLIPPED = renderer->clipped;
     spec.SPEC_ORDER = (uint32_t)renderer->params.traversal;
+    /* Counters, and the leaks of NUMERICS_FAST, are those of the nodes that the twin visits. */
+    spec.SPEC_QUANTIZED = renderer->quantized && !spec.SPEC_INSTANCED && !renderer->params.count &&
+                          spec.SPEC_ORDER == ORDER_DISTANCE &&
+                          renderer->params.numerics != WHIT_NUMERICS_FAST;
     spec.SPEC_NUMERICS = renderer->params.numerics;
     spec.SPEC_COUNT = renderer->params.count;
     spec.SPEC_PROBE = target->probed;
@@ -236,6 +240,7 @@ static struct bindings bind_trees(const struct target *target)
     bind_loads(&bindings, BIND_TRIANGLES, BIND_TRIANGLE_TEXELS, texels, scene->triangles);
     bind_loads(&bindings, BIND_INSTANCES, BIND_INSTANCE_TEXELS, texels, scene->instances);
     bind(&bindings, BIND_NODE8_TEXELS, BINDING_TEXELS, scene->nodes8);
+    bind(&bindings, BIND_QUANTIZED_TEXELS, BINDING_TEXELS, scene->quantized);
     bind(&bindings, BIND_STATUS, BINDING_STORAGE, target->buffers.status);
     bind(&bindings, BIND_DEFERRED, BINDING_STORAGE, NULL);
     return bindings;

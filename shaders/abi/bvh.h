@@ -24,6 +24,22 @@ GPU_ASSERT_SIZE(gpu_bvh_node, 32)
 #define BVH_FIRST_MASK  0x0fffffffu
 #define BVH_EMPTY_REF   0xffffffffu /* a tree without primitives */
 
+/* The same nodes in 16 bytes, by the same indices, where a tree has no instances. A side of a box is
+   in steps of the grid from its corner on: lowest in the lower 16 bits, highest in the upper 16. */
+struct gpu_quantized_node {
+    gpu_uint x, y, z;
+    gpu_uint ref;
+};
+GPU_ASSERT_SIZE(gpu_quantized_node, 16)
+
+/* The grid of these nodes, in the place of the first one. */
+struct gpu_quantized_grid {
+    gpu_vec3 corner;
+    gpu_float scale; /* steps a unit of length: a power of two */
+};
+GPU_ASSERT_SIZE(gpu_quantized_grid, 16)
+#define QUANTIZED_STEPS 65536 /* no side of a tree is longer */
+
 /* In `count` of the first node of a pair: the axis on which the centres of the two boxes are
    farthest apart, and whether the second node is the lower one on it. For ORDER_SIGN. */
 #define BVH_AXIS_SHIFT 4u

@@ -157,7 +157,8 @@
     X(61, SPEC_LIST_GROUP, 64)        /* SPEC_GROUP_SIZE of kernels that take items of lists */    \
     X(62, SPEC_DEFERRED_GROUP, 64)    /* SPEC_GROUP_SIZE of kernels for deferred items */          \
     X(63, SPEC_LIGHTS_EACH, 1)        /* most lights of a dispatch, where one list serves all */       \
-    X(64, SPEC_DIRECT, 0)             /* STAGE_SHADE_DIRECT; of sums: the set has that stage */
+    X(64, SPEC_DIRECT, 0)             /* STAGE_SHADE_DIRECT; of sums: the set has that stage */      \
+    X(65, SPEC_QUANTIZED, 0)               /* traverse() reads struct gpu_quantized_node */
 
 #ifdef __STDC_VERSION__
 #define GPU_SPEC_FIELD(id, name, value) uint32_t name;

@@ -5,6 +5,7 @@
 #define BIND_TRAVERSE_GLSL
 
 #include "settle.glsl"
+#include "quantized.glsl"
 #include "deferred.glsl"
 
 // Defined by the kernel: whether a cut-out primitive is solid at a point. `u` and `v` of a sphere are
@@ -189,10 +190,22 @@ bool second_first(RaySetup ray, uint bits)
     return down != ((bits & BVH_SECOND_LOW) != 0u);
 }
 
-// One step down: tests both nodes of `pair`, returns the one to visit first, and pushes the other.
-// With SPEC_CLIPPED boxes of mesh trees are widened by the ray's margin.
-uint step_siblings(RaySetup ray, float t_min, float near_share, uint pair, inout NodeStack stack,
-               inout Hit hit)
+// The children of a node: their refs, which of them the ray enters, and whether it should visit the
+// second one first.
+struct Siblings {
+    uint ref_a, ref_b;
+    bool hit_a, hit_b, b_wanted;
+};
+
+Siblings meet_quantized_siblings(RaySetup ray, uint pair)
+{
+    uvec4 a = texelFetch(quantized_texels, int(pair)), b = texelFetch(quantized_texels, int(pair + 1u));
+    ivec2 in_a = enter_quantized_box(ray, a.xyz), in_b = enter_quantized_box(ray, b.xyz);
+    return Siblings(a.w, b.w, in_a.x <= in_a.y, in_b.x <= in_b.y, in_b.x < in_a.x);
+}
+
+// Tests both nodes of `pair`. With SPEC_CLIPPED boxes of mesh trees are widened by the ray's margin.
+Siblings meet_siblings(RaySetup ray, float t_min, float near_share, uint pair, Hit hit)
 {
     uvec4 a0 = fetch_node_row(pair * 2u);
     uvec4 a1 = fetch_node_row(pair * 2u + 1u);
@@ -207,23 +220,36 @@ uint step_siblings(RaySetup ray, float t_min, float near_share, uint pair, inout
         t_min = t_min < intBitsToFloat(NEAR_STEPS) ? intBitsToFloat(NEAR_STEPS) : t_min;
     slab_interval(ray, a_lo, a_hi, t_min, a_near, a_far);
     slab_interval(ray, b_lo, b_hi, t_min, b_near, b_far);
-    bool hit_a = enters(a_near, a_far, near_share, hit);
-    bool hit_b = enters(b_near, b_far, near_share, hit);
-    uint ref_a = (a1.w << BVH_COUNT_SHIFT) | a0.w;
-    uint ref_b = (b1.w << BVH_COUNT_SHIFT) | b0.w;
-    bool b_wanted = false;
+    Siblings s;
+    s.hit_a = enters(a_near, a_far, near_share, hit);
+    s.hit_b = enters(b_near, b_far, near_share, hit);
+    s.ref_a = (a1.w << BVH_COUNT_SHIFT) | a0.w;
+    s.ref_b = (b1.w << BVH_COUNT_SHIFT) | b0.w;
+    s.b_wanted = false;
     if (SPEC_ORDER == ORDER_DISTANCE)
-        b_wanted = b_near < a_near;
+        s.b_wanted = b_near < a_near;
     if (SPEC_ORDER == ORDER_SIGN)
-        b_wanted = second_first(ray, a1.w);
+        s.b_wanted = second_first(ray, a1.w);
+    return s;
+}
+
+// One step down: tests both nodes of `pair`, returns the one to visit first, and pushes the other.
+uint step_siblings(RaySetup ray, float t_min, float near_share, uint pair, inout NodeStack stack,
+               inout Hit hit)
+{
+    Siblings s;
+    if (SPEC_QUANTIZED != 0u)
+        s = meet_quantized_siblings(ray, pair);
+    else
+        s = meet_siblings(ray, t_min, near_share, pair, hit);
     if (SPEC_COUNT != 0u) {
         stack.level++;
         traversal_cost.inner_nodes++;
         traversal_cost.depth = max(traversal_cost.depth, stack.level);
     }
-    bool b_first = hit_b && (!hit_a || b_wanted);
-    push_ref(hit_a && hit_b, b_first ? ref_a : ref_b, stack, hit.status);
-    return pop_ref(!hit_a && !hit_b, b_first ? ref_b : ref_a, stack);
+    bool b_first = s.hit_b && (!s.hit_a || s.b_wanted);
+    push_ref(s.hit_a && s.hit_b, b_first ? s.ref_a : s.ref_b, stack, hit.status);
+    return pop_ref(!s.hit_a && !s.hit_b, b_first ? s.ref_b : s.ref_a, stack);
 }
 
 // Whether filters can be added without a closer look: their depth follows from the record, or from
@@ -489,6 +515,8 @@ void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint s
 {
     deferred = false;
     do {
+        if (SPEC_QUANTIZED != 0u)
+            quantized_ray.end = floatBitsToInt(quantized_distance(farthest(hit)));
         do {
             if (is_inner(ref) && has_room(stack))
                 ref = step_siblings(ray, t_min, 0.0, ref, stack, hit);
@@ -528,6 +556,8 @@ void traverse_mesh(const uint mode, RaySetup ray, float t_min, uint root, uint s
 {
     NodeStack stack = make_stack(0u, 0u);
     uint ref = root;
+    if (SPEC_QUANTIZED != 0u)
+        make_quantized_ray(ray, t_min);
     do {
         bool deferred;
         walk_mesh(mode, ray, t_min, 0u, skip_instance, skip_primitive, ref, stack, hit, deferred);

@@ -19,6 +19,7 @@ layout(set = 0, binding = BIND_INSTANCES, std430) readonly buffer InstanceBuffer
     uvec4 instance_rows[];
 };
 layout(set = 0, binding = BIND_INSTANCE_TEXELS) uniform usamplerBuffer instance_texels;
+layout(set = 0, binding = BIND_QUANTIZED_TEXELS) uniform usamplerBuffer quantized_texels;
 layout(set = 0, binding = BIND_STATUS, std430) buffer StatusBuffer
 {
     uint status_word;

@@ -186,6 +186,15 @@ change(shaders/lib/intersect.glsl [[first * ray.inv_dir;]]
 change(shaders/lib/intersect.glsl [[last * ray.inv_dir;]]
   [[(last + ray.origin) * ray.inv_dir - ray.origin * ray.inv_dir;]])
 
+mutation(quantized_boxes_too_narrow render_quantized RED hits_are_those_of_large_nodes)
+change(shaders/bind/quantized.glsl [[QUANTIZED_MARGIN = 1.0 / 524288.0]] [[QUANTIZED_MARGIN = 0.0]])
+
+mutation(quantized_rays_unmoved render_quantized RED hits_are_those_of_large_nodes)
+change(shaders/bind/quantized.glsl [[min(t_min, 0.0)]] [[0.0]])
+
+mutation(quantized_boxes_inwards render_quantized RED boxes_are_rounded_outwards)
+change(host/accel/quantized.c [[ceil(hi / step)]] [[floor(hi / step)]])
+
 mutation(beam_boxes_too_narrow render_trace RED packets_equal_twin)
 change(shaders/bind/beam.glsl [[vec3(box_margin(lo, hi))]] [[vec3(0.0)]])
 

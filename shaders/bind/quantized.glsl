@@ -1,0 +1,76 @@
+// Box tests with nodes of 16 bytes (struct gpu_quantized_node), for rays one by one in a tree without
+// instances. A ray is turned into steps of the grid, and its t into a distance along the axis on
+// which it goes farthest. Boxes are widened by more than all roundings, so that a ray meets all
+// primitives that it meets by nodes of 32 bytes, and has the same hits (docs/numerics.md).
+#ifndef BIND_QUANTIZED_GLSL
+#define BIND_QUANTIZED_GLSL
+
+#include "../lib/intersect.glsl"
+#include "trees.glsl"
+
+// The margin of boxes, relative to the distance of the ray's origin and the size of the grid: twice
+// what the roundings here, the test of a primitive's own box and its SLAB_FAR_SCALE add up to.
+const float QUANTIZED_MARGIN = 1.0 / 524288.0;
+// The largest reciprocal of a direction whose largest component is 1. In place of infinity it keeps
+// NaN away: a ray that runs along a box's side is inside by the margin, and would leave it only
+// behind the grid.
+const float QUANTIZED_INVERSE_MAX = 16777216.0; // 2^24
+
+const float QUANTIZED_UNIT_MIN = 7.8886090522101181e-31;  // 2^-100
+const float QUANTIZED_MARGIN_MAX = 1.2676506002282294e+30; // 2^100
+
+// The ray in steps of the grid. `first`, `last`: its origin, moved away by the margin from the sides of
+// boxes that it reaches first, and from those that it reaches last.
+struct QuantizedRay {
+    vec3 first, last, inverse;
+    float unit, scale; // largest component of the direction; steps a unit of length
+    float start;       // t that distances count from
+    int from, end;     // bits of the distances between which boxes count
+};
+QuantizedRay quantized_ray;
+
+float quantized_distance(float t)
+{
+    return (t - quantized_ray.start) * quantized_ray.unit * quantized_ray.scale;
+}
+
+// A ray that starts behind its origin is moved to there, so that no distance is below 0, and their
+// bits are in their order.
+void make_quantized_ray(RaySetup ray, float t_min)
+{
+    uvec4 head = texelFetch(quantized_texels, 0);
+    vec3 size = abs(ray.dir);
+    quantized_ray.unit = max(size.x, max(size.y, size.z));
+    quantized_ray.scale = uintBitsToFloat(head.w);
+    quantized_ray.start = min(t_min, 0.0);
+    quantized_ray.from = floatBitsToInt(quantized_distance(t_min));
+    vec3 origin = (ray.origin - row_vec3(head)) * quantized_ray.scale;
+    vec3 moved = (ray.dir * quantized_ray.start) * quantized_ray.scale;
+    vec3 reach = abs(origin) + abs(moved);
+    float margin = (max(reach.x, max(reach.y, reach.z)) + float(QUANTIZED_STEPS)) * QUANTIZED_MARGIN;
+    // A ray whose direction or origin is near the end of the range of floats enters all boxes: the
+    // tests of primitives round otherwise there.
+    bool fits = quantized_ray.unit > QUANTIZED_UNIT_MIN && margin < QUANTIZED_MARGIN_MAX;
+    vec3 at = fits ? origin + moved : vec3(0.0);
+    vec3 margins = vec3(uintBitsToFloat(0x7f800000u));
+    if (fits)
+        margins = (ray.above - ray.origin) * quantized_ray.scale + margin;
+    margins = mix(margins, -margins, ray.negative);
+    quantized_ray.first = at + margins;
+    quantized_ray.last = at - margins;
+    vec3 inverse = min(quantized_ray.unit / size, vec3(QUANTIZED_INVERSE_MAX));
+    quantized_ray.inverse = mix(inverse, -inverse, ray.negative);
+}
+
+// The distances at which the ray enters and leaves the box of a node, as bits. It misses the box if
+// the first is larger.
+ivec2 enter_quantized_box(RaySetup ray, uvec3 sides)
+{
+    uvec3 reached = mix(sides, sides >> 16 | sides << 16, ray.negative); // the first side is lowest
+    ivec3 near = floatBitsToInt((vec3(reached & 0xffffu) - quantized_ray.first) * quantized_ray.inverse);
+    ivec3 far = floatBitsToInt((vec3(reached >> 16) - quantized_ray.last) * quantized_ray.inverse);
+    return ivec2(max(max(near.x, near.y), max(near.z, quantized_ray.from)),
+                 min(min(far.x, far.y), min(far.z, quantized_ray.end)));
+}
+
+#endif

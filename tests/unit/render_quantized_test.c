@@ -1,0 +1,108 @@
+/* Nodes of 16 bytes: the hits of nodes of 32 bytes, which the float mirror reads, bit for bit. */
+#include "../cases.h"
+#include "accel/quantized.h"
+#include "ray_fixture.h"
+#include "unit.h"
+
+static struct scene *scaled_terrain(float scale, float offset)
+{
+    struct scene *scene = scene_begin(&fixture_log, "terrain");
+    struct scene_mesh mesh = mesh_terrain(10.0, 2.0, 24, 3);
+    for (uint32_t i = 0; i < 3 * mesh.vertex_count; ++i)
+        mesh.positions[i] = (mesh.positions[i] + (i % 3 == 1 ? offset : -offset)) * scale;
+    scene_put(scene, mesh, NULL);
+    return scene;
+}
+
+/* Makes rays whose origins are up to 10^6 sizes of the scene away, whose directions are up to 2^100
+   times longer or shorter, and some of which start behind their origin. At NUMERICS_EXACT these are
+   10^2 and 2^-40, as others meet more candidates than lavapipe's loops can settle. */
+static void make_hard(struct gpu_ray *rays, uint32_t count, bool exact)
+{
+    const float away[] = {0.0f, 1e1f, 1e2f, exact ? 1e2f : 1e6f};
+    const int exponents[] = {0, 100, exact ? -40 : -135, 20, -20};
+    uint64_t random = 5;
+    for (uint32_t i = 0; i < count; ++i) {
+        struct gpu_ray *ray = &rays[i];
+        float far = away[i / 4 % 4], unit = ldexpf(1.0f, exponents[i / 16 % 5]);
+        for (int k = 0; k < 3; ++k) {
+            ray->origin[k] -= ray->dir[k] * far;
+            ray->dir[k] *= unit;
+        }
+        ray->t_min = i % 3 == 0 ? -2.0f * fabsf(random_float_signed(&random)) / unit : 0.0f;
+        ray->t_max = i % 5 == 0 ? (far + 1.0f) / unit : INFINITY;
+    }
+}
+
+/* Rays in the plane of a side of the grid or of boxes, and beside it. */
+static void run_along_sides(const struct accel *accel, struct gpu_ray *rays, uint32_t count)
+{
+    const struct accel_mesh *mesh = &accel->meshes[0];
+    uint64_t random = 17;
+    for (uint32_t i = 0; i < count; ++i) {
+        uint32_t at = 2 + random_below(&random, mesh->node_count - 2), axis = i % 3;
+        const struct gpu_bvh_node *node = &accel->nodes[mesh->first_node + at];
+        rays[i].origin[axis] = i & 4 ? node->lo[axis] : node->hi[axis];
+        rays[i].dir[axis] = i & 8 ? 0.0f : i & 16 ? -0.0f : ldexpf(rays[i].dir[axis], -60);
+    }
+}
+
+static void check(float scale, float offset, uint32_t numerics)
+{
+    const uint32_t count = cases_of(32000);
+    const whit_renderer_params params = {.width = 16, .height = 16, .numerics = numerics};
+    own_fixture f = fixture_open(scaled_terrain(scale, offset), NULL, &params);
+    own_memory struct gpu_ray *rays = array_alloc(count, sizeof *rays);
+    own_memory struct gpu_hit *hits = array_alloc(count, sizeof *hits);
+    uint32_t met = 0, unlike = 0;
+    assert_true(rays && hits);
+    assert_true(f.renderer->quantized);
+    for (uint32_t i = 0; i < 2; ++i) {
+        aim_rays(&f, rays, count, 3 + i);
+        if (i == 0)
+            make_hard(rays, count, numerics == NUMERICS_EXACT);
+        else
+            run_along_sides(f.accel, rays, count);
+        unlike += trace_beside_twin(&f, false, rays, count, hits, NULL).hits;
+        for (uint32_t k = 0; k < count; ++k)
+            met += hits[k].primitive != HIT_NONE;
+    }
+    print_message("  scale %g, offset %g, level %u: %u of %u rays hit, %u unlike the mirror\n",
+                  (double)scale, (double)offset, numerics, met, 2 * count, unlike);
+    assert_true(met > count / 8);
+    assert_int_equal(unlike, 0);
+}
+
+TEST(hits_are_those_of_large_nodes)
+{
+    assert_int_equal(setenv("WHIT_NODES", "16", 1), 0);
+    check(1.0f, 0.0f, NUMERICS_WATERTIGHT);
+    check(1e-15f, 1e4f, NUMERICS_WATERTIGHT);
+    check(1e15f, 0.0f, NUMERICS_WATERTIGHT);
+    check(1.0f, 0.0f, NUMERICS_EXACT);
+    check(1e-2f, 1e2f, NUMERICS_EXACT);
+    check(1e6f, 0.0f, NUMERICS_EXACT);
+}
+
+/* A box on the grid contains the box of its node. */
+TEST(boxes_are_rounded_outwards)
+{
+    own_fixture f = fixture_open(scaled_terrain(3.7f, 1.3f), NULL, NULL);
+    const struct accel_mesh *mesh = &f.accel->meshes[0];
+    assert_true(accel_can_quantize(mesh));
+    own_memory struct gpu_quantized_node *nodes = accel_quantize(f.accel, mesh);
+    assert_non_null(nodes);
+    struct gpu_quantized_grid head;
+    memcpy(&head, nodes, sizeof head);
+    for (uint32_t i = mesh->first_node + 2; i < mesh->first_node + mesh->node_count; ++i) {
+        const uint32_t sides[3] = {nodes[i].x, nodes[i].y, nodes[i].z};
+        for (int k = 0; k < 3; ++k) {
+            double corner = (double)head.corner[k], step = 1.0 / (double)head.scale;
+            double lo = corner + step * (double)(sides[k] & 0xffff);
+            double hi = corner + step * (double)(sides[k] >> 16);
+            const struct gpu_bvh_node *node = &f.accel->nodes[i];
+            assert_true(lo <= (double)node->lo[k] && (double)node->lo[k] < lo + step);
+            assert_true(hi >= (double)node->hi[k] && (double)node->hi[k] > hi - step);
+        }
+    }
+}
