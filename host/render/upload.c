@@ -498,7 +498,8 @@ whit_result upload_scene(struct renderer *renderer)
     return result;
 }
 
-/* With a tree over instances only its nodes move, which are the first ones. */
+/* With a tree over instances only its nodes move, which are the first ones. Rays may need it no
+   more where the only instance gets to where its file puts it. */
 whit_result upload_pose(struct renderer *renderer)
 {
     const struct accel *accel = renderer->accel;
@@ -509,6 +510,8 @@ whit_result upload_pose(struct renderer *renderer)
         uint64_t bytes = (uint64_t)accel->instance_node_count * sizeof *accel->nodes;
         if (bytes > 0)
             result = buffer_write(renderer->scene_buffers.nodes, 0, accel->nodes, bytes);
+        if (result == WHIT_OK && !renderer->scene_buffers.quantized)
+            result = upload_quantized(renderer);
         if (result == WHIT_OK)
             result = upload_nodes8(renderer);
         if (result == WHIT_OK)

@@ -106,3 +106,28 @@ TEST(boxes_are_rounded_outwards)
         }
     }
 }
+
+/* The only object moves to where its file puts it at 1 s, and so needs no tree over instances from
+   then on. */
+TEST(a_tree_that_loses_its_instances_gets_nodes)
+{
+    static const float times[] = {0, 1}, path[] = {3, 1, 0, 0, 0, 0};
+    struct scene *scene = scene_begin(&fixture_log, "terrain that moves");
+    uint32_t node = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
+    scene_put(scene, mesh_terrain(10.0, 2.0, 24, 3), &(struct put){.node = &node});
+    scene_put_channel(scene, node, SCENE_PATH_TRANSLATION, 2, times, path);
+    assert_int_equal(setenv("WHIT_NODES", "16", 1), 0);
+    own_fixture f = fixture_open(scene, NULL, NULL);
+    struct gpu_ray rays[256];
+    struct gpu_hit hits[256];
+    assert_false(f.renderer->quantized);
+    assert_int_equal(renderer_set_time(f.renderer, 1.0), WHIT_OK);
+    assert_true(f.renderer->quantized);
+    aim_rays(&f, rays, 256, 3);
+    for (int i = 0; i < 256; ++i) {
+        rays[i].origin[0] -= path[0];
+        rays[i].origin[1] -= path[1];
+    }
+    assert_int_equal(trace_beside_twin(&f, false, rays, 256, hits, NULL).hits, 0);
+    assert_true(count_met(hits, 256) > 64);
+}
