@@ -5,7 +5,7 @@
 #ifndef BIND_QUANTIZED_GLSL
 #define BIND_QUANTIZED_GLSL
 
-#include "../lib/intersect.glsl"
+#include "../lib/exact.glsl"
 #include "trees.glsl"
 
 // The margin of boxes, relative to the distance of the ray's origin and the size of the grid: twice
@@ -35,19 +35,20 @@ float quantized_distance(float t)
 }
 
 // A ray that starts behind its origin is moved to there, so that no distance is below 0, and their
-// bits are in their order.
+// bits are in their order. But it is moved no farther than behind the grid, as the margin grows with
+// that.
 void make_quantized_ray(RaySetup ray, float t_min)
 {
     uvec4 head = texelFetch(quantized_texels, 0);
-    vec3 size = abs(ray.dir);
-    quantized_ray.unit = max(size.x, max(size.y, size.z));
+    quantized_ray.unit = largest_magnitude(ray.dir);
     quantized_ray.scale = uintBitsToFloat(head.w);
-    quantized_ray.start = min(t_min, 0.0);
-    quantized_ray.from = floatBitsToInt(quantized_distance(t_min));
     vec3 origin = (ray.origin - row_vec3(head)) * quantized_ray.scale;
+    float reach = largest_magnitude(origin) + float(QUANTIZED_STEPS);
+    float behind = -2.0 * reach / (quantized_ray.unit * quantized_ray.scale);
+    quantized_ray.start = max(min(t_min, 0.0), behind);
+    quantized_ray.from = floatBitsToInt(quantized_distance(t_min));
     vec3 moved = (ray.dir * quantized_ray.start) * quantized_ray.scale;
-    vec3 reach = abs(origin) + abs(moved);
-    float margin = (max(reach.x, max(reach.y, reach.z)) + float(QUANTIZED_STEPS)) * QUANTIZED_MARGIN;
+    float margin = (reach + largest_magnitude(moved)) * QUANTIZED_MARGIN;
     // A ray whose direction or origin is near the end of the range of floats enters all boxes: the
     // tests of primitives round otherwise there.
     bool fits = quantized_ray.unit > QUANTIZED_UNIT_MIN && margin < QUANTIZED_MARGIN_MAX;
@@ -58,7 +59,7 @@ void make_quantized_ray(RaySetup ray, float t_min)
     margins = mix(margins, -margins, ray.negative);
     quantized_ray.first = at + margins;
     quantized_ray.last = at - margins;
-    vec3 inverse = min(quantized_ray.unit / size, vec3(QUANTIZED_INVERSE_MAX));
+    vec3 inverse = min(quantized_ray.unit / abs(ray.dir), vec3(QUANTIZED_INVERSE_MAX));
     quantized_ray.inverse = mix(inverse, -inverse, ray.negative);
 }
 

@@ -131,3 +131,22 @@ TEST(a_tree_that_loses_its_instances_gets_nodes)
     assert_int_equal(trace_beside_twin(&f, false, rays, 256, hits, NULL).hits, 0);
     assert_true(count_met(hits, 256) > 64);
 }
+
+/* A ray that starts far behind its origin would meet all boxes if the margin grew with that: more
+   than lavapipe's loops have turns for. */
+TEST(boxes_stay_narrow_for_rays_that_start_far_behind)
+{
+    const whit_accel_params trees = {.leaf_limit = 1};
+    struct scene *scene = scene_begin(&fixture_log, "large terrain");
+    scene_put(scene, mesh_terrain(10.0, 2.0, 256, 3), NULL);
+    assert_int_equal(setenv("WHIT_NODES", "16", 1), 0);
+    own_fixture f = fixture_open(scene, &trees, NULL);
+    struct gpu_ray rays[64];
+    struct gpu_hit hits[64];
+    aim_rays(&f, rays, 64, 3);
+    for (int i = 0; i < 64; ++i)
+        rays[i].t_min = i % 2 ? -1e7f : -INFINITY;
+    assert_true(f.renderer->quantized);
+    assert_int_equal(trace_beside_twin(&f, false, rays, 64, hits, NULL).hits, 0);
+    assert_true(count_met(hits, 64) > 16);
+}
