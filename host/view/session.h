@@ -107,9 +107,8 @@ WHIT_CHECK whit_result session_open(struct session *session, const struct settin
 /* Adapts a session to another version of the shader. `settings` differ from the session's only in
    what its renderer can change. Compiles that version, and draws the first step of the picture,
    since drivers compile then; session->step gets it. If the view moves, a small picture is drawn
-   instead. If the shader is wrong, or no camera can be
-   chosen, the session stays as it was. If its kernels cannot be made, the session has no renderer
-   and has to be closed. */
+   instead. If the shader is wrong, or no camera can be chosen, the session stays as it was. If its
+   kernels cannot be made, the session has no renderer and has to be closed. */
 WHIT_CHECK whit_result session_reload(struct session *session, const struct settings *settings,
                                       const struct session_parts *parts);
 /* Frees everything. Returns the number of messages that the validation layers had about its

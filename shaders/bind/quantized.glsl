@@ -67,7 +67,8 @@ void make_quantized_ray(RaySetup ray, float t_min)
 // the first is larger.
 ivec2 enter_quantized_box(RaySetup ray, uvec3 sides)
 {
-    uvec3 reached = mix(sides, sides >> 16 | sides << 16, ray.negative); // the first side is lowest
+    // The lower 16 bits are the side that the ray reaches first.
+    uvec3 reached = mix(sides, sides >> 16 | sides << 16, ray.negative);
     ivec3 near = floatBitsToInt((vec3(reached & 0xffffu) - quantized_ray.first) * quantized_ray.inverse);
     ivec3 far = floatBitsToInt((vec3(reached >> 16) - quantized_ray.last) * quantized_ray.inverse);
     return ivec2(max(max(near.x, near.y), max(near.z, quantized_ray.from)),
