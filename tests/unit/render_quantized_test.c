@@ -14,9 +14,10 @@ static struct scene *scaled_terrain(float scale, float offset)
     return scene;
 }
 
-/* Makes rays whose origins are up to 10^6 sizes of the scene away, whose directions are up to 2^100
-   times longer or shorter, and some of which start behind their origin. At NUMERICS_EXACT these are
-   10^2 and 2^-40, as others meet more candidates than lavapipe's loops can settle. */
+/* Makes rays whose origins are up to 10^6 sizes of the scene away, whose directions are
+   2^-135 to 2^100 times as long, and some of which start behind their origin. At NUMERICS_EXACT
+   origins are at most 10^2 sizes away and directions 2^-40 times as long or more, as other rays
+   meet more candidates than lavapipe's loops can settle. */
 static void make_hard(struct gpu_ray *rays, uint32_t count, bool exact)
 {
     const float away[] = {0.0f, 1e1f, 1e2f, exact ? 1e2f : 1e6f};
