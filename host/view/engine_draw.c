@@ -38,7 +38,7 @@ void engine_note_time(struct engine_lane *lane, const struct engine_frame *frame
               frame->draw_ms / (samples * pixels_of(&frame->settings)));
 }
 
-static uint32_t choose_divisor(const struct engine *engine, const struct engine_lane *lane)
+static uint32_t choose_divisor(const struct engine *engine, struct engine_lane *lane)
 {
     double budget_ms =
         engine->params.budget_ms > 0.0 ? engine->params.budget_ms : BUDGET_DEFAULT_MS;
@@ -74,8 +74,7 @@ static bool looks_same(const struct engine_lane *lane)
            settings_same_pixels(&lane->last, &lane->settings);
 }
 
-void engine_plan(const struct engine *engine, const struct engine_lane *lane,
-                 struct engine_task *task)
+void engine_plan(const struct engine *engine, struct engine_lane *lane, struct engine_task *task)
 {
     uint32_t divisor = choose_divisor(engine, lane);
     uint32_t samples = samples_of(&lane->settings);

@@ -22,8 +22,7 @@ struct engine_task {
 };
 
 /* Plans quality and size of the next picture of a lane. */
-void engine_plan(const struct engine *engine, const struct engine_lane *lane,
-                 struct engine_task *task);
+void engine_plan(const struct engine *engine, struct engine_lane *lane, struct engine_task *task);
 /* Notes how long a picture took, to plan the next ones by it. Called with engine->lock held. */
 void engine_note_time(struct engine_lane *lane, const struct engine_frame *frame);
 /* Draws a picture. Called on the drawing thread, without engine->lock. The caller calls
