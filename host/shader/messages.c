@@ -206,6 +206,9 @@ static bool take_function(struct glslang_answer *answer, const struct glslang_qu
         return false;
     const char *calling = strstr(next, " calling ");
     plain_name(next, name, sizeof name);
+    bool left = scan_finds(preprocessed, strlen(preprocessed), name, NULL);
+    bool written = scan_finds(question->text + question->user_at,
+                              question->user_end - question->user_at, name, NULL);
     if (calling)
         plain_name(calling + strlen(" calling "), called, sizeof called);
     if (recursion && strcmp(name, called) == 0)
@@ -214,10 +217,10 @@ static bool take_function(struct glslang_answer *answer, const struct glslang_qu
         snprintf(why, sizeof why,
                  "%s calls %s, which leads back to it: there is no recursion in GLSL", name,
                  called);
-    else if (link_is_hook(name) && !scan_finds(preprocessed, strlen(preprocessed), name, NULL))
+    else if (link_is_hook(name) && !left && written)
         snprintf(why, sizeof why,
                  "the preprocessor leaves no function %.16s: an #if or a macro hides it", name);
-    else if (link_is_hook(name))
+    else if (link_is_hook(name) && left)
         snprintf(why, sizeof why,
                  "%.16s has other parameters than whit's own: `whit shader new %.16s` prints it",
                  name, name);

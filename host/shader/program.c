@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "shader/annotations.h"
 #include "shader/expand.h"
+#include "shader/scan.h"
 #include "shader/sliders.h"
 #include "whit/whit_program.h"
 
@@ -235,24 +236,8 @@ static void kernel_request_init(const whit_shader *shader, const struct kernel_p
                                           .trust = shader->trust};
 }
 
-/* intersect() without //@ box is an error, and so is //@ box without intersect(). */
-static bool find_box(const whit_log *log, const whit_shader *shader, struct shader_errors *errors)
-{
-    uint32_t file, line;
-    bool has = shader_has(shader, WHIT_HOOK_INTERSECT);
-    if (has == (shader->box.line > 0))
-        return true;
-    if (has && shader_text_defines(&shader->text, "intersect", &file, &line))
-        shader_error_add(log, errors, shader->text.files[file].name, line, 0,
-                         "intersect() needs `//@ box` with the box that its shape is in");
-    else
-        shader_error_add(log, errors, shader->text.files[shader->box.file].name, shader->box.line,
-                         0, "the box has no shape: there is no function intersect()");
-    return false;
-}
-
-static whit_result find_hooks(const whit_log *log, whit_shader *shader,
-                              struct shader_errors *errors)
+/* Finds whit's functions in the file. False: it lacks something, see explain_lack. */
+static bool find_hooks(whit_shader *shader)
 {
     for (uint32_t i = 0; i < WHIT_HOOKS; ++i) {
         if (i == WHIT_HOOK_AOV ? shader->aov_count == 0
@@ -260,15 +245,8 @@ static whit_result find_hooks(const whit_log *log, whit_shader *shader,
             continue;
         shader->hooks |= 1u << i;
     }
-    if (!find_box(log, shader, errors))
-        return WHIT_ERROR_INPUT;
-    if (shader->hooks || shader->tests.test_count)
-        return WHIT_OK;
-    shader_error_add(
-        log, errors, shader->text.files[0].name, 0, 0,
-        "has none of the functions camera, surface, shade, scatter, miss, post, intersect, and "
-        "none below `//@ aov NAME`");
-    return WHIT_ERROR_INPUT;
+    return (shader->hooks || shader->tests.test_count) &&
+           shader_has(shader, WHIT_HOOK_INTERSECT) == (shader->box.line > 0);
 }
 
 /* Compiles a kernel of shader->stages: as it is, or (`hooks`) as a base that the user's functions
@@ -334,6 +312,50 @@ static whit_result compile_all(const whit_log *log, struct shader_compiler *comp
     }
     parts_finish(&parts);
     return result;
+}
+
+/* Whether the word stands anywhere in the files. */
+static bool has_word(const struct shader_text *text, const char *word)
+{
+    for (uint32_t i = 0; i < text->file_count; ++i) {
+        struct scan scan;
+        scan_begin(&scan, text->files[i].text, text->files[i].bytes);
+        while (scan_next(&scan)) {
+            if (scan_is(&scan, SCAN_WORD, word))
+                return true;
+        }
+    }
+    return false;
+}
+
+/* Reports what a file lacks: functions, or intersect() for its //@ box, or the box. A brace or
+   bracket without its other one hides functions, and then the compiler knows where it is. */
+static whit_result explain_lack(const whit_log *log, struct shader_compiler *compiler,
+                                whit_shader *shader, struct shader_errors *errors)
+{
+    struct kernel_parts parts;
+    uint32_t file, line;
+    whit_result result = WHIT_ERROR_MEMORY;
+    for (uint32_t i = 0; i < WHIT_HOOKS; ++i) {
+        if (i != WHIT_HOOK_AOV && has_word(&shader->text, hook_names[i]))
+            shader->hooks |= 1u << i;
+    }
+    if (parts_init(log, shader, TEXT_PLAIN, &parts))
+        result = compile_hooked(compiler, shader, &parts, HOOK_KERNEL_POST, errors);
+    parts_finish(&parts);
+    if (result != WHIT_OK)
+        return result;
+    if (shader->box.line)
+        shader_error_add(log, errors, shader->text.files[shader->box.file].name, shader->box.line,
+                         0, "the box has no shape: there is no function intersect()");
+    else if (shader_text_defines(&shader->text, "intersect", &file, &line))
+        shader_error_add(log, errors, shader->text.files[file].name, line, 0,
+                         "intersect() needs `//@ box` with the box that its shape is in");
+    else
+        shader_error_add(log, errors, shader->text.files[0].name, 0, 0,
+                         "has none of the functions camera, surface, shade, scatter, miss, post, "
+                         "intersect, and none below `//@ aov NAME`");
+    return WHIT_ERROR_INPUT;
 }
 
 static void list_files(whit_shader *shader)
@@ -424,8 +446,8 @@ whit_result shader_program_create(const whit_log *log, struct shader_compiler *c
         result = shader_tests_read(log, &shader->text, &shader->tests, errors);
     if (result == WHIT_OK && has_text)
         result = shader_dbg_read(log, &shader->text, &shader->tests, &shader->dbg, errors);
-    if (result == WHIT_OK && has_text)
-        result = find_hooks(log, shader, errors);
+    if (result == WHIT_OK && has_text && !find_hooks(shader))
+        result = explain_lack(log, compiler, shader, errors);
     if (result == WHIT_OK)
         result = compile_all(log, compiler, shader, TEXT_PLAIN, errors);
     if (result == WHIT_OK && shader->dbg.count)

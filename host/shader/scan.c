@@ -278,7 +278,7 @@ bool scan_finds(const char *text, size_t bytes, const char *name, uint32_t *line
     struct scan_functions functions = {.braces = 0};
     scan_begin(&scan, text, bytes);
     while (scan_next_function(&scan, &functions)) {
-        if (name && strcmp(functions.name, name) != 0)
+        if (strcmp(functions.name, name) != 0)
             continue;
         if (line)
             *line = functions.line;

@@ -57,8 +57,8 @@ bool scan_next_function(struct scan *scan, struct scan_functions *functions);
 /* The same token by token, to be called after each scan_next. True: the current token opens the
    body of a function. */
 bool scan_follow(const struct scan *scan, struct scan_functions *functions);
-/* Whether a text has a function of this name (NULL: any) with a body at the top level. *line, which
-   may be NULL: that of its name. */
+/* Whether a text has a function of this name with a body at the top level. *line, which may be
+   NULL: that of its name. */
 bool scan_finds(const char *text, size_t bytes, const char *name, uint32_t *line);
 
 /* Copies the text from behind a bracket up to its closing one into `out`, which has `bytes`: runs

@@ -483,8 +483,6 @@ static whit_result read_all(struct reading *r, const char *first)
     uint32_t index;
     char *relative = string_copy(first);
     whit_result result = relative ? read_one(r, NULL, relative, &index) : no_memory(r);
-    if (result == WHIT_OK && !shader_text_defines(r->text, NULL, NULL, NULL))
-        result = at(r, 0, 0, "it has no function");
     if (result != WHIT_OK)
         shader_text_free(r->text);
     return result;

@@ -45,9 +45,8 @@ struct shader_text {
    Errors that name the include and its line: a file that is missing, outside, not regular, or over
    the limits; a file that includes itself. Errors that name the file and line: bytes 0 and others
    that are no text, characters beyond ASCII outside of comments and strings, #version, #extension,
-   #line, a comment or an #if without end, an #endif too many. A file without any function is
-   refused. WHIT_ERROR_INPUT, _MEMORY; *text is then empty. `errors` may be NULL. Free it by
-   shader_text_free. */
+   #line, a comment or an #if without end, an #endif too many. WHIT_ERROR_INPUT, _MEMORY; *text is
+   then empty. `errors` may be NULL. Free it by shader_text_free. */
 WHIT_CHECK whit_result shader_text_read(const whit_log *log, const char *path,
                                         struct shader_text *text, struct shader_errors *errors);
 
@@ -71,7 +70,7 @@ void shader_text_free(struct shader_text *text);
 bool shader_text_copy(const struct shader_text *text, size_t more, struct shader_text *out);
 void shader_text_end_copy(struct shader_text *copy); /* accepts a zeroed one */
 
-/* Whether any of the files has a function of this name (NULL: any) with a body at the top level;
+/* Whether any of the files has a function of this name with a body at the top level;
    *file and *line (may be NULL): the first of them. The text is not preprocessed: code in a false
    #if counts, but for `#if 0`, and code that macros make does not. */
 bool shader_text_defines(const struct shader_text *text, const char *name, uint32_t *file,

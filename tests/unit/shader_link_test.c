@@ -141,3 +141,39 @@ TEST_IN(what_is_whits_own_is_refused, compiler_begin, compiler_end)
             fail_msg("%s: %s", cases[i].content, errors.count ? errors.items[0].reason : "taken");
     }
 }
+
+/* Braces and brackets without their other one hide functions from what looks for them. */
+TEST_IN(hidden_functions_are_told_by_the_compiler, compiler_begin, compiler_end)
+{
+    static const char none[] = "has none of the functions camera";
+    static const struct {
+        const char *content;
+        uint32_t line, column;
+        const char *why;
+    } cases[] = {
+        {"float f(float x)\n{\n return x;\n\nvec3 post(ivec2 at, vec3 c)\n{\n return c;\n}\n", 2, 1,
+         "a brace without its other one"},
+        {"\nvec3 post(ivec2 at, vec3 c\n{\n return c;\n}\n", 3, 1, "unexpected '{'"},
+        {"vec3 post(ivec2 at, vec3 c)\n return c;\n}\n", 2, 0, "unexpected"},
+        {"\nconst float K = (2.0;\nvec3 post(ivec2 at, vec3 c) { return K * c; }\n", 2, 21,
+         "unexpected ';'"},
+        {"//@ box 0 0 0 1 1 1 0.01\nbool intersect(vec3 o, vec3 d, float far, out float t, out "
+         "vec3 "
+         "n\n{\n return false; }\n",
+         3, 1, "unexpected '{'"},
+        {"\nvec3 post(ivec2 at, vec3 c);\nfloat f() { return 1.0; }\n", 2, 0,
+         "post is called and has no body"},
+        {"", 0, 0, none},
+        {"// nothing\n/* at all */\nconst float x = 1.0;\n", 0, 0, none},
+        {"float f();\nstruct S { float x; };\n", 0, 0, none},
+        {"float f() { return 1.0; }\n", 0, 0, none},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        whit_shader *shader = make(cases[i].content);
+        const struct shader_error *error = &errors.items[0];
+        if (shader || errors.count == 0 || error->line != cases[i].line ||
+            error->column != cases[i].column || !strstr(error->reason, cases[i].why))
+            fail_msg("%s: %s:%u:%u: %s", cases[i].content, error->file, error->line, error->column,
+                     errors.count ? error->reason : "taken");
+    }
+}
