@@ -56,19 +56,11 @@ static bool is_black(const struct engine_frame *frame)
     return true;
 }
 
-static void draw_aov(const struct engine_frame *frame)
-{
-    const char *aov = frame->settings.aov;
-    if (aov[0] && frame->settings.paint == PAINT_COLOR)
-        ui_text(shader_ref_find_aov(frame->shader, aov) != UINT32_MAX ? "aov %s"
-                                                                      : "no `//@ aov %s`: colours",
-                aov);
-}
-
 static void draw_figures(const struct view *view)
 {
-    draw_aov(&view->frame);
     const struct engine_frame *frame = &view->frame;
+    if (frame->settings.aov[0] && frame->settings.paint == PAINT_COLOR)
+        ui_text("aov %s", frame->settings.aov);
     const whit_stats *s = &frame->stats;
     double ms = engine_drawn_ms(s);
     char fps[24] = "still";

@@ -72,17 +72,24 @@ void shaders_end(struct view *view)
     shader_ref_drop(view->shaders.shown);
 }
 
-/* Says that the shader has no aov of the name in the settings: colours are shown instead. */
-static void say_no_aov(struct view *view)
+/* Shows colours, and says so, if the shader has no aov of the name in the settings. Nothing names
+   it any more, so that pictures and lines for `whit render` can be drawn again. */
+static void drop_aov(struct view *view)
 {
-    const struct shader_ref *shown = view->shaders.shown;
-    const char *aov = view->settings.aov;
-    if (!shown || !aov[0] || shader_ref_find_aov(shown, aov) != UINT32_MAX)
+    const struct shader_ref *shader = view->frame.shader;
+    const char *aov = view->frame.settings.aov;
+    if (!shader || !aov[0] || shader_ref_find_aov(shader, aov) != UINT32_MAX)
         return;
-    const char *nearest = text_nearest(aov, shown->info.aovs, shown->info.aov_count);
-    view_say(view, "%s has no `//@ aov %s`%s%s%s", path_name(view->settings.shader), aov,
-             nearest ? "; did you mean `" : "", nearest ? nearest : "", nearest ? "`?" : "");
-    log_warning(&view->log, "%s", view->toast);
+    if (strcmp(view->settings.aov, aov) == 0 &&
+        settings_same_shader(&view->settings, &view->frame.settings)) {
+        const char *nearest = text_nearest(aov, shader->info.aovs, shader->info.aov_count);
+        view_say(view, "%s has no `//@ aov %s`%s%s%s", path_name(view->settings.shader), aov,
+                 nearest ? "; did you mean `" : "", nearest ? nearest : "", nearest ? "`?" : "");
+        log_warning(&view->log, "%s", view->toast);
+        view->settings.aov[0] = '\0';
+        view->dirty = true;
+    }
+    view->frame.settings.aov[0] = view->fallback.aov[0] = '\0';
 }
 
 /* Drops values of sliders that the file no longer has or takes, so that pictures and lines for
@@ -100,6 +107,7 @@ static void keep_sliders(struct view *view)
 void shaders_take(struct view *view)
 {
     struct shaders *shaders = &view->shaders;
+    drop_aov(view);
     if (shaders->shown == view->frame.shader)
         return;
     if (shaders->shown && view->frame.shader) {
@@ -111,7 +119,6 @@ void shaders_take(struct view *view)
     shaders->errors[0] = shaders->line[0] = '\0';
     watch_files(view);
     keep_sliders(view);
-    say_no_aov(view);
 }
 
 bool shaders_set_before(const struct view *view, struct settings *settings)

@@ -140,6 +140,23 @@ END
     mv whit-0002.png height.png
     expect 0 "and drawn by its recipe" render height.png --yes --quiet -o again.png
     expect 0 "is the same" compare height.png again.png --metric differing --tolerance 0
+    # A save without the aov that is shown goes back to colours, and neither recipe nor line name it any more.
+    { cat live/a.glsl && printf '//@ aov low\nvec4 low(Surface s) { return vec4(-s.p.y); }\n'; } >two.new
+    cp live/a.glsl colours.new
+    versions live/n.glsl two colours
+    EXPECTED=$said
+    play "an aov that is gone" cube.json --size 96x64 --shader live/n.glsl --aov low <<END
+low: | render has --aov low
+do put colours.new live/n.glsl
+until shader.hash = $colours
+gone: still, press F12 | frame.pixels not as low
+END
+    check "it is said" grep -qF 'warning: n.glsl has no `//@ aov low`' "$OUT/stderr"
+    check "the line does not name it" test "$(value gone render | grep -c -e --aov)" -eq 0
+    mv whit-0002.png gone.png
+    expect 0 "what was saved is drawn again" render gone.png --yes --quiet -o again.png
+    expect 0 "as it was" compare gone.png again.png --metric differing --tolerance 0
+    EXPECTED=
     play "by the file, and A beside B" cube.json --state whit-0001.view --ui-scale 0.5 <<END
 state: | error =
 panel: press X, press Tab
