@@ -24,34 +24,46 @@ static void share_kernel(struct stages_job *job, enum stage first, enum stage la
     job->of[first] = later;
 }
 
+/* Decides which hits ask for light that the shadow stages bring, and leaves these stages out if
+   none does. `apart`: some tiles are shaded without STAGE_SHADE_DIRECT. */
+static void choose_who_asks(struct stages_job *job, const whit_shader *shader, bool apart)
+{
+    /* A user's shade() has added the light itself; only shadow catchers still ask for it. */
+    bool may = !shader_has(shader, WHIT_HOOK_SHADE) || job->spec.SPEC_CATCHERS;
+    const struct gpu_spec *plain = &job->stages[STAGE_SHADE].spec,
+                          *glass = &job->stages[STAGE_SHADE_GLASS].spec;
+    bool glass_asks = may && job->classes == CLASSES_MAX && glass->SPEC_LIGHTS;
+    bool plain_asks = may && plain->SPEC_LIGHTS;
+    job->asks = plain_asks || glass_asks;
+    job->asks_directly = glass_asks || (plain_asks && job->spec.SPEC_NUMERICS == NUMERICS_EXACT);
+    if (!job->asks)
+        job->wanted[STAGE_SHAPE_LIGHT] = false;
+    if (!(apart ? job->asks : job->asks_directly))
+        job->wanted[STAGE_SHADOW] = job->wanted[STAGE_SHADOW_LATER] = false;
+}
+
 void stages_job_init(const struct target *target, const struct gpu_spec *spec, bool own, bool few,
                      struct stages_job *job)
 {
     const struct renderer *renderer = target->renderer;
     const whit_shader *shader = renderer->params.shader;
     *job = (struct stages_job){.spec = *spec};
-    /* A user's shade() has added the light itself; only shadow catchers still need the shadow
-       stages. */
-    job->asks = !shader_has(shader, WHIT_HOOK_SHADE) || spec->SPEC_CATCHERS;
     job->classes = own ? variant_classes(target) : 1;
     bool direct = own && !few && variant_lights_directly(target, spec, job->classes);
-    job->asks_directly = job->asks && (job->classes > 1 || spec->SPEC_NUMERICS == NUMERICS_EXACT);
     /* Timed tiles are shaded without it, so that each light has its time. */
     bool apart = !direct || renderer->params.time_stages;
-    bool asks = job->asks && (apart || job->asks_directly);
     bool splits = variant_splits_hits(target);
     for (int i = 0; i < STAGE_COUNT; ++i) {
         job->of[i] = (enum stage)i;
-        bool shadow = i == STAGE_SHADOW || i == STAGE_SHADOW_LATER;
         bool later = i == STAGE_CLOSEST || i == STAGE_SHADOW_LATER || i == STAGE_RESOLVE_LATER;
         bool part = i == STAGE_HIT_FETCH || i == STAGE_HIT_CALL;
-        job->wanted[i] = (!shadow || asks) && (!later || renderer->has_secondary) &&
-                         (i != STAGE_SHADE || apart) && (i != STAGE_SHADE_DIRECT || direct) &&
-                         (!part || splits) && (i != STAGE_HIT || !splits) &&
+        job->wanted[i] = (!later || renderer->has_secondary) && (i != STAGE_SHADE || apart) &&
+                         (i != STAGE_SHADE_DIRECT || direct) && (!part || splits) &&
+                         (i != STAGE_HIT || !splits) &&
                          (i != STAGE_MISS || shader_has(shader, WHIT_HOOK_MISS)) &&
                          (i != STAGE_SHAPE || shader_has(shader, WHIT_HOOK_INTERSECT)) &&
-                         (i != STAGE_SHAPE_LIGHT || (shader_has(shader, WHIT_HOOK_INTERSECT) &&
-                                                     job->asks && spec->SPEC_SHADOWS)) &&
+                         (i != STAGE_SHAPE_LIGHT ||
+                          (shader_has(shader, WHIT_HOOK_INTERSECT) && spec->SPEC_SHADOWS)) &&
                          (i != STAGE_HIT || shader_has(shader, WHIT_HOOK_SURFACE) ||
                           shader_has(shader, WHIT_HOOK_SHADE)) &&
                          (i != STAGE_AOV || spec->SPEC_AOVS > 0) &&
@@ -60,6 +72,7 @@ void stages_job_init(const struct target *target, const struct gpu_spec *spec, b
         if (job->wanted[i] || i == STAGE_SHADE)
             variant_job_init(target, spec, job->classes, (enum stage)i, &job->stages[i]);
     }
+    choose_who_asks(job, shader, apart);
     job->stages[STAGE_RESOLVE].spec.SPEC_DIRECT = direct;
     job->stages[STAGE_RESOLVE_LATER].spec.SPEC_DIRECT = direct;
     /* Without packets, the shadow rays of all generations have the same code. */

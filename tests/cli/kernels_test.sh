@@ -17,6 +17,26 @@ check "all stages of whitted, with one kernel for all shadow rays, which go with
     test "$(jq -r '[.kernels[].name] | join(", ")' "$OUT/stdout")" = \
     "camera, closest, shade glass, shade and light, shadow later, resolve, resolve later"
 check "each was made" jq -e 'all(.kernels[]; .instructions > 100 and .create_ms > 0)' "$OUT/stdout"
+cat > "$OUT/dark.json" <<'END'
+{"lights": [{"kind": "point", "position": [-3, 6, 4], "intensity": 40}],
+ "materials": {"dark": {"diffuse": 0, "ambient": 0, "transmission": 1, "ior": 1.3}},
+ "objects": [{"shape": "plane", "size": 16}, {"shape": "ball", "translation": [0, 1, 0], "material": "dark"}]}
+END
+dark="camera, closest, shade glass, shade and light, resolve, resolve later"
+expect 0 "glass that no light is seen on" scene "$OUT/dark.json" --kernels --size 480x320 --json
+check "no hit asks for light later, so there is no kernel for that" \
+    test "$(jq -r '[.kernels[].name] | join(", ")' "$OUT/stdout")" = "$dark"
+expect 0 "exact" scene "$OUT/dark.json" --kernels --size 480x320 --numerics exact --json
+check "some of the floor's shadow rays are deferred" jq -e 'any(.kernels[]; .name == "shadow later")' "$OUT/stdout"
+for level in watertight exact; do
+    expect 0 "$level" render "$OUT/dark.json" -o "$OUT/many.pfm" --size 480x320 --numerics $level
+    expect 0 "$level, stages timed" \
+        render "$OUT/dark.json" -o "$OUT/timed.pfm" --size 480x320 --numerics $level --stats text
+    expect 0 "$level, one kernel" \
+        render "$OUT/dark.json" -o "$OUT/one.pfm" --size 480x320 --numerics $level --classes one
+    check "$level: the same picture" cmp "$OUT/many.pfm" "$OUT/one.pfm"
+    check "$level: the same picture, timed" cmp "$OUT/many.pfm" "$OUT/timed.pfm"
+done
 expect 0 "with packets" scene "$SCENES/34k.json" --kernels --size 480x320 --json
 sum=$(jq '[.kernels[].instructions] | add' "$OUT/stdout")
 shows "the picture" "^  $sum of " render "$SCENES/34k.json" -o "$OUT/w.pfm" --size 480x320 --stats text --quiet
