@@ -101,6 +101,8 @@ whit_result params_check(const whit_log *log, whit_renderer_params *params)
     n = params->light_samples;
     if (n != 0 && (!is_power_of_4(n) || n > LIGHT_SAMPLES_MAX))
         return log_usage(log, "%u samples of an area light: must be 1, 4, 16 or 64", n);
+    if (params->node_bytes && params->node_bytes != 16 && params->node_bytes != 32)
+        return log_usage(log, "nodes of %u bytes: must be 16 or 32", params->node_bytes);
     if (params->segments > 2)
         return log_usage(log, "%u segments of lists: must be 1 or 2", params->segments);
     if (params->tile_size && (params->tile_size < TILE_MIN || params->tile_size > TILE_MAX))

@@ -127,16 +127,16 @@ static const struct accel_mesh *only_tree(const struct renderer *renderer)
 
 /* Nodes of 16 bytes are for lavapipe, where a node costs what its loads cost, and for trees that
    are larger than a core's caches: in smaller ones the few steps of a ray do not save what it takes
-   to prepare. Tests choose them by WHIT_NODES, 16 or 32. */
+   to prepare. */
 bool upload_chooses_quantized(const struct renderer *renderer)
 {
     enum { NODES_MIN = 1 << 13 };
     const struct accel_mesh *tree = only_tree(renderer);
-    const char *chosen = getenv("WHIT_NODES");
+    uint32_t asked_bytes = renderer->params.node_bytes;
     if (!tree || !renderer->scene_buffers.texel_loads || renderer->accel->no_trees ||
         device_get_info(renderer->device)->kind != WHIT_DEVICE_CPU || !accel_can_quantize(tree))
         return false;
-    return chosen ? strcmp(chosen, "16") == 0 : tree->node_count >= NODES_MIN;
+    return asked_bytes ? asked_bytes == 16 : tree->node_count >= NODES_MIN;
 }
 
 static whit_result upload_quantized(struct renderer *renderer)

@@ -29,6 +29,8 @@ static const struct setting_value values_switch[] = {{"off", 0, NULL}, {"on", 1,
 static const struct setting_value values_at_rest[] = {{"refine", 1, NULL}, {"stay", 0, NULL}, {0}};
 static const struct setting_value values_segments[] = {
     {"auto", 0, NULL}, {"1", 1, NULL}, {"2", 2, NULL}, {0}};
+static const struct setting_value values_nodes[] = {
+    {"auto", 0, NULL}, {"16", 16, NULL}, {"32", 32, NULL}, {0}};
 
 /* ---- What keys and panels of the viewer turn through ---- */
 
@@ -521,6 +523,11 @@ const struct setting settings_table[] = {
      "how many segments lists have; 2: one for each thread of\n"
      "lavapipe",
      AT(CHOICE, picture.segments), .values = values_segments, .developer = true,
+     .commands = IN_RENDER},
+    {"nodes", 0, NULL,
+     "bytes of the nodes that rays outside of packets read;\n"
+     "auto: 16 in large trees without instances",
+     AT(CHOICE, picture.node_bytes), .values = values_nodes, .developer = true,
      .commands = IN_RENDER},
 
     /* Removed options come last: settings.given has only 64 bits, and none for these rows. */

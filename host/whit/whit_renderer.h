@@ -148,11 +148,14 @@ typedef struct whit_renderer_params {
     whit_load_path load_path;
     whit_traversal traversal;
     whit_numerics numerics;
-    /* How the kernels work; these do not change the picture. `segments`: into how many parts work
+    /* How the kernels work; these do not change the picture. `node_bytes`: the size of nodes that
+       rays outside of packets read, 16 or 32; 0: chosen by the size of the tree. Instances,
+       WHIT_NUMERICS_FAST, `count` and other devices than CPUs have no nodes of 16 bytes, and use
+       those of 32. `segments`: into how many parts work
        lists are divided, 1 or 2; 0: chosen for the device. */
     whit_packets packets;
     whit_classes classes;
-    uint32_t segments;
+    uint32_t segments, node_bytes;
     bool count; /* counts traversal costs, for whit_stats.costs and whit_renderer_cost_image; not
                    with adaptive samples */
     /* Functions in the place of whit's own, borrowed as long as the renderer lives; NULL: none. Its

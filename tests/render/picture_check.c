@@ -376,14 +376,16 @@ static void check_stages(const struct subject *subject, whit_numerics level, boo
         whit_renderer_params params;
     } ways[] = {
         {"--packets on --segments 1", {.packets = WHIT_PACKETS_ON, .segments = 1}},
-        {"--packets off --classes many",
-         {.packets = WHIT_PACKETS_OFF, .classes = WHIT_CLASSES_MANY}},
+        {"--packets off --classes many --nodes 16",
+         {.packets = WHIT_PACKETS_OFF, .classes = WHIT_CLASSES_MANY, .node_bytes = 16}},
         {"--packets on", {.packets = WHIT_PACKETS_ON}},
         {"--packets off", {.packets = WHIT_PACKETS_OFF}},
         {"--classes one", {.classes = WHIT_CLASSES_ONE}},
         {"--classes many", {.classes = WHIT_CLASSES_MANY}},
         {"--segments 1", {.segments = 1}},
         {"--segments 2", {.segments = 2}},
+        {"--nodes 16", {.node_bytes = 16}},
+        {"--nodes 32", {.node_bytes = 32}},
         {"--tile-size 17", {.tile_size = 17}},
     };
     whit_renderer_params params = {.numerics = level};

@@ -557,6 +557,7 @@ TEST(nonsense_is_refused)
         {.effects_added = 1, .effects_removed = 1},
         {.numerics = (whit_numerics)3},
         {.classes = (whit_classes)9},
+        {.node_bytes = 8},
         {.camera = CAMERA_AT(0, 0, 0, 0, 0, 0, 0, 1, 0, 40)},
         {.camera = CAMERA_AT(0, 0, 1, 0, 0, 0, 0, 1, 0, 180)},
         {.camera = {.name = "0,0,1,0,0,0,0,1,0"}},

@@ -4,6 +4,9 @@
 #include "ray_fixture.h"
 #include "unit.h"
 
+static const whit_renderer_params small_nodes = {
+    .width = 16, .height = 16, .depth = 4, .node_bytes = 16};
+
 static struct scene *scaled_terrain(float scale, float offset)
 {
     struct scene *scene = scene_begin(&fixture_log, "terrain");
@@ -51,7 +54,8 @@ static void run_along_sides(const struct accel *accel, struct gpu_ray *rays, uin
 static void check(float scale, float offset, uint32_t numerics)
 {
     const uint32_t count = cases_of(32000);
-    const whit_renderer_params params = {.width = 16, .height = 16, .numerics = numerics};
+    const whit_renderer_params params = {
+        .width = 16, .height = 16, .numerics = numerics, .node_bytes = 16};
     own_fixture f = fixture_open(scaled_terrain(scale, offset), NULL, &params);
     own_memory struct gpu_ray *rays = array_alloc(count, sizeof *rays);
     own_memory struct gpu_hit *hits = array_alloc(count, sizeof *hits);
@@ -76,7 +80,6 @@ static void check(float scale, float offset, uint32_t numerics)
 
 TEST(hits_are_those_of_large_nodes)
 {
-    assert_int_equal(setenv("WHIT_NODES", "16", 1), 0);
     check(1.0f, 0.0f, NUMERICS_WATERTIGHT);
     check(1e-15f, 1e4f, NUMERICS_WATERTIGHT);
     check(1e15f, 0.0f, NUMERICS_WATERTIGHT);
@@ -117,8 +120,7 @@ TEST(a_tree_that_loses_its_instances_gets_nodes)
     uint32_t node = scene_put_node(scene, SCENE_NONE, 0, 0, 0);
     scene_put(scene, mesh_terrain(10.0, 2.0, 24, 3), &(struct put){.node = &node});
     scene_put_channel(scene, node, SCENE_PATH_TRANSLATION, 2, times, path);
-    assert_int_equal(setenv("WHIT_NODES", "16", 1), 0);
-    own_fixture f = fixture_open(scene, NULL, NULL);
+    own_fixture f = fixture_open(scene, NULL, &small_nodes);
     struct gpu_ray rays[256];
     struct gpu_hit hits[256];
     assert_false(f.renderer->quantized);
@@ -140,8 +142,7 @@ TEST(boxes_stay_narrow_for_rays_that_start_far_behind)
     const whit_accel_params trees = {.leaf_limit = 1};
     struct scene *scene = scene_begin(&fixture_log, "large terrain");
     scene_put(scene, mesh_terrain(10.0, 2.0, 256, 3), NULL);
-    assert_int_equal(setenv("WHIT_NODES", "16", 1), 0);
-    own_fixture f = fixture_open(scene, &trees, NULL);
+    own_fixture f = fixture_open(scene, &trees, &small_nodes);
     struct gpu_ray rays[64];
     struct gpu_hit hits[64];
     aim_rays(&f, rays, 64, 3);

@@ -116,7 +116,7 @@ RendererParams = _struct(
     ("tile_size", c_uint32), ("cancel", c_void_p),
     ("progress", _ProgressFn), ("progress_user", c_void_p), ("step_spacing step_aov", c_uint32),
     ("step", c_void_p), ("time_limit_s", c_double), ("load_path", LoadPath), ("traversal", Traversal),
-    ("numerics", Numerics), ("packets", Packets), ("classes", Classes), ("segments", c_uint32), ("count", c_bool),
+    ("numerics", Numerics), ("packets", Packets), ("classes", Classes), ("segments node_bytes", c_uint32), ("count", c_bool),
     ("shader", c_void_p), ("sliders", c_char_p), ("skip_sliders", c_bool), ("trace_rays", c_uint32))
 ImageInfo = _struct("ImageInfo", ("width height channels", c_uint32), ("integers", c_bool))
 Ray = _struct("Ray", ("origin", c_float * 3), ("t_min", c_float), ("dir", c_float * 3), ("t_max", c_float))

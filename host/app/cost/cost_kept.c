@@ -22,10 +22,11 @@ static void find_name(const struct cost_place *place, char name[COST_KEPT_NAME])
     const whit_renderer_params *picture = &settings.picture;
     settings.budget_ms = settings.max_error = 0.0;
     settings_write(&settings, SETTINGS_LINE, " ", line, sizeof line);
-    snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %.17g %u %d %d %u %s|%s|%s", KEPT_VERSION,
-             WHIT_VERSION, place->scene.hash, picture->width, picture->height, picture->time_s,
-             picture->tile_size, (int)picture->packets, (int)picture->classes, picture->segments,
-             line, place->device.name, place->device.driver);
+    snprintf(key, sizeof key, "%d %s %016" PRIx64 " %ux%u %.17g %u %d %d %u %u %s|%s|%s",
+             KEPT_VERSION, WHIT_VERSION, place->scene.hash, picture->width, picture->height,
+             picture->time_s, picture->tile_size, (int)picture->packets, (int)picture->classes,
+             picture->segments, picture->node_bytes, line, place->device.name,
+             place->device.driver);
     snprintf(name, COST_KEPT_NAME, "cost-%016" PRIx64, hash_bytes(HASH_START, key, strlen(key)));
 }
 
