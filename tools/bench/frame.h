@@ -32,6 +32,7 @@ struct frame {
     uint32_t depth, width, height;
     uint32_t small_width, small_height; /* size of a small picture whose time is subtracted; 0:
                                            none */
+    bool packets[FRAME_SIDES];          /* whether whit chooses packets for the picture */
     struct bench_scene loaded;
     whit_reference *reference;
     struct peer peer;

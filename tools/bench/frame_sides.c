@@ -20,10 +20,37 @@ static whit_renderer_params params_of(const struct frame *frame)
     };
 }
 
+static whit_numerics level_of(enum frame_side side)
+{
+    return side == FRAME_FAST    ? WHIT_NUMERICS_FAST
+           : side == FRAME_EXACT ? WHIT_NUMERICS_EXACT
+                                 : WHIT_NUMERICS_WATERTIGHT;
+}
+
+/* Finds out whether whit draws the picture with packets where it chooses by itself. */
+static whit_result find_packets(struct frame *frame, enum frame_side side)
+{
+    whit_renderer_params params = params_of(frame);
+    whit_renderer *renderer = NULL;
+    whit_stats stats;
+    params.numerics = level_of(side);
+    whit_result result =
+        whit_renderer_create(frame->bench->device, frame->loaded.accel, &params, &renderer);
+    if (result != WHIT_OK)
+        return result;
+    whit_renderer_get_stats(renderer, &stats);
+    frame->packets[side] = stats.packets;
+    whit_renderer_destroy(renderer);
+    return WHIT_OK;
+}
+
 whit_result frame_prepare(struct frame *frame)
 {
+    static const enum frame_side levels[] = {FRAME_WHIT, FRAME_FAST, FRAME_EXACT};
     const whit_renderer_params params = params_of(frame);
     whit_result result = bench_load_trees(frame->path, &frame->loaded);
+    for (size_t i = 0; result == WHIT_OK && i < sizeof levels / sizeof *levels; ++i)
+        result = find_packets(frame, levels[i]);
     if (result == WHIT_OK)
         result = whit_reference_create(frame->loaded.accel, &params, 0, &frame->reference);
     return result;
@@ -68,10 +95,11 @@ static whit_result run_whit(const struct frame *frame, enum frame_side side, uin
                 "--light-samples", "16", "--quiet", NULL);
     if (side == FRAME_FAST || side == FRAME_EXACT)
         process_add(&process, "--numerics", side == FRAME_FAST ? "fast" : "exact", NULL);
-    /* The same kernels for the small picture as for the large one, so that the time before the
-       first ray cancels out. */
-    if (!is_other)
-        process_add(&process, "--packets", "on", "--classes", "many", NULL);
+    /* The small picture gets the kernels that the large one has by whit's own choice, so that the
+       time before the first ray cancels out. */
+    if (!is_other && width == frame->small_width)
+        process_add(&process, "--packets", frame->packets[side] ? "on" : "off", "--classes", "many",
+                    NULL);
     process_add_device(&process, frame->bench);
     if (frame->bench->ask.settings.no_cache)
         process_add(&process, "--no-cache", NULL);
