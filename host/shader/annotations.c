@@ -220,43 +220,10 @@ static bool is_own(const char *name)
     return strncmp(name, "HAS_", 4) == 0 || strcmp(name, "dbg") == 0;
 }
 
-/* Whether GLSL has or reserves the word (The OpenGL Shading Language 4.60, 3.6 Keywords). */
-static bool is_keyword(const char *name)
-{
-    static const char words[] =
-        " active asm atomic_uint attribute bool break buffer case cast centroid class coherent "
-        "common const continue default demote discard do double else enum extern external false "
-        "filter fixed flat float for fvec2 fvec3 fvec4 goto half highp hvec2 hvec3 hvec4 if in "
-        "inline inout input int interface invariant layout long lowp mediump namespace noinline "
-        "noperspective out output packed partition patch precise precision public readonly "
-        "resource restrict return sample shared short sizeof smooth static struct subroutine "
-        "superp switch template this true typedef uint uniform union unsigned using varying void "
-        "volatile while writeonly ";
-    static const char *const types[] = {"vec", "bvec", "ivec",    "uvec",  "dvec",
-                                        "mat", "dmat", "sampler", "image", "texture"};
-    enum { VECTORS = 5, MATRICES = 2 };
-    char word[SHADER_NAME_BYTES + 2];
-    snprintf(word, sizeof word, " %s ", name);
-    for (size_t i = 0; i < sizeof types / sizeof *types; ++i) {
-        size_t length = strlen(types[i]);
-        if (strncmp(name, types[i], length) != 0)
-            continue;
-        const char *rest = name + length; /* as in vec3, mat2x4, image2D */
-        bool sized = rest[0] >= '2' && rest[0] <= '4';
-        bool by = rest[0] && rest[1] == 'x' && rest[2] >= '2' && rest[2] <= '4' && !rest[3];
-        bool of_dimension = rest[0] >= '1' && rest[0] <= '3' && rest[1] == 'D' && !rest[2];
-        if (i < VECTORS              ? sized && !rest[1]
-            : i < VECTORS + MATRICES ? sized && (!rest[1] || by)
-                                     : of_dimension)
-            return true;
-    }
-    return strstr(words, word);
-}
-
 static bool is_new_name(const struct line *line, const char *name)
 {
     const whit_shader *shader = line->shader;
-    if (is_keyword(name)) {
+    if (scan_is_keyword(name)) {
         return complain(line, "`%s` is a word of GLSL: another name is needed", name);
     }
     if (is_own(name)) {
@@ -403,9 +370,11 @@ static bool read_version(struct line *line)
 {
     char word[SHADER_NAME_BYTES], own[16];
     snprintf(own, sizeof own, "%d", WHIT_SHADER_VERSION);
+    if (ends(line))
+        return complain(line, "behind `//@ whit` stands the version, which is %s", own);
     if (!next_word(line, word, sizeof word) || strcmp(word, own) != 0)
         return complain(line,
-                        "the file is for version `%.60s` of what hooks may use; this whit has %s, "
+                        "the file is for version `%.60s` of whit's functions; this whit has %s, "
                         "the first one: see docs/shaders.md",
                         word, own);
     return ends(line) || complain(line, "behind the version stands nothing more");

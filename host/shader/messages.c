@@ -10,7 +10,7 @@
 #include "shader/link.h"
 #include "shader/scan.h"
 
-enum { NOBODY = 2, LINE_BYTES = 2048 };
+enum { NOBODY = 2, LINE_BYTES = 2048, SIGN_BYTES = 32 };
 
 static bool has_error(const struct glslang_answer *answer, uint32_t own, uint32_t file,
                       uint32_t line)
@@ -141,15 +141,39 @@ static const char *const signs[][2] = {
     {"INTCONSTANT", "a number"},
     {"UINTCONSTANT", "a number"},
     {"FLOATCONSTANT", "a number"},
+    {"BOOLCONSTANT", "'true' or 'false'"},
+    {"INC_OP", "'++'"},
+    {"DEC_OP", "'--'"},
+    {"LE_OP", "'<='"},
+    {"GE_OP", "'>='"},
+    {"EQ_OP", "'=='"},
+    {"NE_OP", "'!='"},
+    {"AND_OP", "'&&'"},
+    {"OR_OP", "'||'"},
+    {"XOR_OP", "'^^'"},
+    {"LEFT_OP", "'<<'"},
+    {"RIGHT_OP", "'>>'"},
+    {"ADD_ASSIGN", "'+='"},
+    {"SUB_ASSIGN", "'-='"},
+    {"MUL_ASSIGN", "'*='"},
+    {"DIV_ASSIGN", "'/='"},
+    {"MOD_ASSIGN", "'%='"},
 };
 
-static const char *sign_of(const char *word, size_t length)
+/* Writes a token of glslang's grammar as it stands in a text. A keyword's name there is the keyword
+   in capitals. False: it is no such token. */
+static bool write_sign(const char *word, size_t length, char sign[SIGN_BYTES])
 {
     for (size_t i = 0; i < sizeof signs / sizeof *signs; ++i) {
         if (strlen(signs[i][0]) == length && strncmp(signs[i][0], word, length) == 0)
-            return signs[i][1];
+            return snprintf(sign, SIGN_BYTES, "%s", signs[i][1]) > 0;
     }
-    return NULL;
+    char keyword[SIGN_BYTES];
+    snprintf(keyword, sizeof keyword, "%.*s", (int)length, word);
+    for (char *c = keyword; *c; ++c)
+        *c = (char)tolower((unsigned char)*c);
+    snprintf(sign, SIGN_BYTES, "'%.28s'", keyword);
+    return length && isupper((unsigned char)word[0]) && scan_is_keyword(keyword);
 }
 
 /* Turns `'x' :  reason ` into `'x': reason` and `'' : reason` into `reason`, and names of tokens in
@@ -157,18 +181,20 @@ static const char *sign_of(const char *word, size_t length)
 static void tidy(const char *from, char out[SHADER_REASON_BYTES])
 {
     size_t used = 0;
+    char sign[SIGN_BYTES];
     from += strncmp(from, "'' : ", 5) == 0 ? 5 : 0;
     from += strspn(from, " ");
+    bool grammar = strncmp(from, "syntax error", 12) == 0;
     while (*from && used + 8 < SHADER_REASON_BYTES) {
         size_t word = 0;
         while (scan_is_of_word(from[word]))
             word++;
-        const char *sign = word ? sign_of(from, word) : NULL;
+        bool is_sign = grammar && write_sign(from, word, sign);
         bool colon = strncmp(from, "' : ", 4) == 0;
         size_t length = word ? word : colon ? 3 + strspn(from + 3, " ") : 1;
         used += (size_t)snprintf(out + used, SHADER_REASON_BYTES - used, "%.*s",
-                                 sign || colon ? INT_MAX : (int)length,
-                                 sign    ? sign
+                                 is_sign || colon ? INT_MAX : (int)length,
+                                 is_sign ? sign
                                  : colon ? "': "
                                          : from);
         used = used < SHADER_REASON_BYTES ? used : SHADER_REASON_BYTES - 1;

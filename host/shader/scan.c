@@ -1,5 +1,6 @@
 #include "shader/scan.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static bool is_newline(char c)
@@ -312,4 +313,37 @@ void scan_copy_brackets(const char *at, char *out, size_t bytes)
     while (used && out[used - 1] == ' ')
         used--;
     strcpy(out + used, open ? "..." : "");
+}
+
+/* The OpenGL Shading Language 4.60, 3.6 Keywords. */
+bool scan_is_keyword(const char *name)
+{
+    static const char words[] =
+        " active asm atomic_uint attribute bool break buffer case cast centroid class coherent "
+        "common const continue default demote discard do double else enum extern external false "
+        "filter fixed flat float for fvec2 fvec3 fvec4 goto half highp hvec2 hvec3 hvec4 if in "
+        "inline inout input int interface invariant layout long lowp mediump namespace noinline "
+        "noperspective out output packed partition patch precise precision public readonly "
+        "resource restrict return sample shared short sizeof smooth static struct subroutine "
+        "superp switch template this true typedef uint uniform union unsigned using varying void "
+        "volatile while writeonly ";
+    static const char *const types[] = {"vec", "bvec", "ivec",    "uvec",  "dvec",
+                                        "mat", "dmat", "sampler", "image", "texture"};
+    enum { VECTORS = 5, MATRICES = 2 };
+    char word[96];
+    snprintf(word, sizeof word, " %s ", name);
+    for (size_t i = 0; i < sizeof types / sizeof *types; ++i) {
+        size_t length = strlen(types[i]);
+        if (strncmp(name, types[i], length) != 0)
+            continue;
+        const char *rest = name + length; /* as in vec3, mat2x4, image2D */
+        bool sized = rest[0] >= '2' && rest[0] <= '4';
+        bool by = rest[0] && rest[1] == 'x' && rest[2] >= '2' && rest[2] <= '4' && !rest[3];
+        bool of_dimension = rest[0] >= '1' && rest[0] <= '3' && rest[1] == 'D' && !rest[2];
+        if (i < VECTORS              ? sized && !rest[1]
+            : i < VECTORS + MATRICES ? sized && (!rest[1] || by)
+                                     : of_dimension)
+            return true;
+    }
+    return strstr(words, word);
 }

@@ -37,6 +37,8 @@ struct scan {
 
 /* Whether a character may be part of a word. */
 bool scan_is_of_word(char c);
+/* Whether GLSL has or reserves the word. */
+bool scan_is_keyword(const char *name);
 
 void scan_begin(struct scan *scan, const char *text, size_t bytes);
 /* Reads the next token; false at the end, or where the text is damaged. Comments are skipped, and

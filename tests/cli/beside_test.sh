@@ -49,7 +49,7 @@ refuse 2 "an error" "max-error is measured against the reference, which has no -
     render "$CUBE" --shader own.glsl --max-error 0.1 -o no.png
 refuse 2 "a budget" "budget-ms is measured against the reference, which has no --shader" \
     render "$CUBE" --shader own.glsl --budget-ms 10 -o no.png
-refuse 2 "prices" "--shader. is of render and view: .* the reference, which has no functions" cost "$CUBE" --shader own.glsl
+refuse 2 "prices" "--shader. is not of cost: .* the reference, which has no functions" cost "$CUBE" --shader own.glsl
 refuse 2 "refining what post makes of it" "post" render "$CUBE" --shader post.glsl --refine 0.1 -o no.png
 check "no picture of any" test ! -e no.png
 finish

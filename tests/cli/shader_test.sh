@@ -260,7 +260,7 @@ fi
 
 printf 'vec3 miss(vec3 dir) {\n    float x = 1.0 return vec3(x);\n}\n' >broken.glsl
 expect 2 "no semicolon" shader broken.glsl
-said "names the line" "broken.glsl:2: syntax error"
+said "names the line" "broken.glsl:2:19: syntax error, unexpected 'return'"
 check "once" test "$(grep -c error: "$OUT/stderr")" -eq 1
 echo 'float f() { return 1.0; }' >none.glsl
 expect 2 "no hook" shader none.glsl

@@ -140,7 +140,7 @@ TEST_IN(texts_that_mean_harm_are_refused, begin, end)
          " f(); return color; }\n",
          "a.glsl:3:", "discard"},
         {"return outside of functions", "return 1;\n" POST " return color; }\n",
-         "a.glsl:1:", "RETURN"},
+         "a.glsl:1:", "'return'"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         put_text("a.glsl", cases[i].content);

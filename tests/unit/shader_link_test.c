@@ -154,7 +154,7 @@ TEST_IN(hidden_functions_are_told_by_the_compiler, compiler_begin, compiler_end)
         {"float f(float x)\n{\n return x;\n\nvec3 post(ivec2 at, vec3 c)\n{\n return c;\n}\n", 2, 1,
          "a brace without its other one"},
         {"\nvec3 post(ivec2 at, vec3 c\n{\n return c;\n}\n", 3, 1, "unexpected '{'"},
-        {"vec3 post(ivec2 at, vec3 c)\n return c;\n}\n", 2, 0, "unexpected"},
+        {"vec3 post(ivec2 at, vec3 c)\n return c;\n}\n", 2, 2, "unexpected 'return'"},
         {"\nconst float K = (2.0;\nvec3 post(ivec2 at, vec3 c) { return K * c; }\n", 2, 21,
          "unexpected ';'"},
         {"//@ box 0 0 0 1 1 1 0.01\nbool intersect(vec3 o, vec3 d, float far, out float t, out "

@@ -222,6 +222,7 @@ TEST(lines_that_are_none_are_refused_with_their_line)
                  {"test \"\"", "nothing more"},
                  {"whit 2", "this whit has 1"},
                  {"whit 1 x", "nothing more"},
+                 {"whit", "the version, which is 1"},
                  {"box 0.15 0 0 0.14 1 1 0.01", "from 0.15"},
                  {"aov", "has a name"},
                  {"aov x y", "has a name"},

@@ -68,8 +68,7 @@ static const struct setting options[] = {
     {"spend", 0, "S", "seconds that it may take, more or less (150)",
      SETTING_AT_NUMBER(struct cost, request.seconds), .min = 0.1, .max = 1e6},
     {"shader", 0, NULL,
-     "is of render and view: errors are measured against the reference, which has no functions of "
-     "yours",
+     "is not of cost: errors are measured against the reference, which has no functions of yours",
      .kind = SETTING_GONE},
     {"samples", 0, NULL, "is `--reference-samples` now", .kind = SETTING_GONE},
     {"reference-samples", 0, NULL,
