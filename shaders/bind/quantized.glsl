@@ -1,7 +1,7 @@
 // Box tests with nodes of 16 bytes (struct gpu_quantized_node), for rays one by one in a tree without
 // instances. A ray is turned into steps of the grid, and its t into a distance along the axis on
 // which it goes farthest. Boxes are widened by more than all roundings, so that a ray meets all
-// primitives that it meets by nodes of 32 bytes, and has the same hits (docs/numerics.md).
+// primitives that it meets by nodes of 32 bytes, and has the same hits (docs/numerics-method.md).
 #ifndef BIND_QUANTIZED_GLSL
 #define BIND_QUANTIZED_GLSL
 
@@ -16,8 +16,8 @@ const float QUANTIZED_MARGIN = 1.0 / 524288.0;
 // behind the grid.
 const float QUANTIZED_INVERSE_MAX = 16777216.0; // 2^24
 
-const float QUANTIZED_UNIT_MIN = 7.8886090522101181e-31;  // 2^-100
 const float QUANTIZED_MARGIN_MAX = 1.2676506002282294e+30; // 2^100
+const float FLOAT_NORMAL_MIN = 1.1754943508222875e-38;     // 2^-126
 
 // The ray in steps of the grid. `first`, `last`: its origin, moved away by the margin from the sides of
 // boxes that it reaches first, and from those that it reaches last.
@@ -44,14 +44,17 @@ void make_quantized_ray(RaySetup ray, float t_min)
     quantized_ray.scale = uintBitsToFloat(head.w);
     vec3 origin = (ray.origin - row_vec3(head)) * quantized_ray.scale;
     float reach = largest_magnitude(origin) + float(QUANTIZED_STEPS);
-    float behind = -2.0 * reach / (quantized_ray.unit * quantized_ray.scale);
+    // Two quotients: a product of unit and scale may be infinite.
+    float behind = max(-2.0 * reach / quantized_ray.scale / quantized_ray.unit, -FLOAT_LARGEST);
     quantized_ray.start = max(min(t_min, 0.0), behind);
     quantized_ray.from = floatBitsToInt(quantized_distance(t_min));
     vec3 moved = (ray.dir * quantized_ray.start) * quantized_ray.scale;
     float margin = (reach + largest_magnitude(moved)) * QUANTIZED_MARGIN;
-    // A ray whose direction or origin is near the end of the range of floats enters all boxes: the
-    // tests of primitives round otherwise there.
-    bool fits = quantized_ray.unit > QUANTIZED_UNIT_MIN && margin < QUANTIZED_MARGIN_MAX;
+    // A ray enters all boxes where t rounds by more than the margin: if it starts near the end of the
+    // range of floats, if the grid lies beyond the least t, or if denormal t are enough to cross it.
+    float denormal = FLOAT_NORMAL_MIN * quantized_ray.unit * quantized_ray.scale;
+    bool fits = margin < QUANTIZED_MARGIN_MAX && quantized_ray.start > -FLOAT_LARGEST &&
+                denormal < float(QUANTIZED_STEPS);
     vec3 at = fits ? origin + moved : vec3(0.0);
     vec3 margins = vec3(uintBitsToFloat(0x7f800000u));
     if (fits)

@@ -195,6 +195,9 @@ change(shaders/bind/quantized.glsl [[min(t_min, 0.0)]] [[0.0]])
 mutation(quantized_boxes_inwards render_quantized RED boxes_are_rounded_outwards)
 change(host/accel/quantized.c [[ceil(hi / step)]] [[floor(hi / step)]])
 
+mutation(quantized_boxes_narrow_for_denormal_t render_quantized RED hits_are_those_of_large_nodes)
+change(shaders/bind/quantized.glsl [[denormal < float(QUANTIZED_STEPS)]] [[denormal >= 0.0]])
+
 mutation(beam_boxes_too_narrow render_trace RED packets_equal_twin)
 change(shaders/bind/beam.glsl [[vec3(box_margin(lo, hi))]] [[vec3(0.0)]])
 

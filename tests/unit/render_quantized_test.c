@@ -18,27 +18,29 @@ static struct scene *scaled_terrain(float scale, float offset)
 }
 
 /* Makes rays whose origins are up to 10^6 sizes of the scene away, whose directions are
-   2^-135 to 2^100 times as long, and some of which start behind their origin. At NUMERICS_EXACT
-   origins are at most 10^2 sizes away and directions 2^-40 times as long or more, as other rays
+   2^-135 to 2^165 times as long, and some of which start behind their origin. At NUMERICS_EXACT
+   origins are at most 10^2 sizes away and directions 2^-104 times as long or more, as other rays
    meet more candidates than lavapipe's loops can settle. */
 static void make_hard(struct gpu_ray *rays, uint32_t count, bool exact)
 {
     const float away[] = {0.0f, 1e1f, 1e2f, exact ? 1e2f : 1e6f};
-    const int exponents[] = {0, 100, exact ? -40 : -135, 20, -20};
+    const int exponents[] = {0, 100, exact ? -104 : -135, 20, -20, 120, 165};
     uint64_t random = 5;
     for (uint32_t i = 0; i < count; ++i) {
         struct gpu_ray *ray = &rays[i];
-        float far = away[i / 4 % 4], unit = ldexpf(1.0f, exponents[i / 16 % 5]);
+        float far = away[i / 4 % 4];
+        int exponent = exponents[i / 16 % 7];
         for (int k = 0; k < 3; ++k) {
             ray->origin[k] -= ray->dir[k] * far;
-            ray->dir[k] *= unit;
+            ray->dir[k] = ldexpf(ray->dir[k], exponent);
         }
-        ray->t_min = i % 3 == 0 ? -2.0f * fabsf(random_float_signed(&random)) / unit : 0.0f;
-        ray->t_max = i % 5 == 0 ? (far + 1.0f) / unit : INFINITY;
+        ray->t_min = i % 3 ? 0.0f : ldexpf(-2.0f * fabsf(random_float_signed(&random)), -exponent);
+        ray->t_max = i % 5 ? INFINITY : ldexpf(far + 1.0f, -exponent);
     }
 }
 
-/* Rays in the plane of a side of the grid or of boxes, and beside it. */
+/* Makes rays in the plane of a side of the grid or of boxes, and beside it. Directions of every
+   second ray are 2^-118 times as long, and go beside a side by a denormal. */
 static void run_along_sides(const struct accel *accel, struct gpu_ray *rays, uint32_t count)
 {
     const struct accel_mesh *mesh = &accel->meshes[0];
@@ -47,7 +49,10 @@ static void run_along_sides(const struct accel *accel, struct gpu_ray *rays, uin
         uint32_t at = 2 + random_below(&random, mesh->node_count - 2), axis = i % 3;
         const struct gpu_bvh_node *node = &accel->nodes[mesh->first_node + at];
         rays[i].origin[axis] = i & 4 ? node->lo[axis] : node->hi[axis];
-        rays[i].dir[axis] = i & 8 ? 0.0f : i & 16 ? -0.0f : ldexpf(rays[i].dir[axis], -60);
+        for (int k = 0; i & 32 && k < 3; ++k)
+            rays[i].dir[k] = ldexpf(rays[i].dir[k], -118);
+        float beside = ldexpf(rays[i].dir[axis], i & 32 ? -15 : -60);
+        rays[i].dir[axis] = i & 8 ? 0.0f : i & 16 ? -0.0f : beside;
     }
 }
 
@@ -56,6 +61,7 @@ static void check(float scale, float offset, uint32_t numerics)
     const uint32_t count = cases_of(32000);
     const whit_renderer_params params = {
         .width = 16, .height = 16, .numerics = numerics, .node_bytes = 16};
+    own_fixture unscaled = fixture_open(scaled_terrain(1.0f, offset), NULL, &params);
     own_fixture f = fixture_open(scaled_terrain(scale, offset), NULL, &params);
     own_memory struct gpu_ray *rays = array_alloc(count, sizeof *rays);
     own_memory struct gpu_hit *hits = array_alloc(count, sizeof *hits);
@@ -63,7 +69,13 @@ static void check(float scale, float offset, uint32_t numerics)
     assert_true(rays && hits);
     assert_true(f.renderer->quantized);
     for (uint32_t i = 0; i < 2; ++i) {
-        aim_rays(&f, rays, count, 3 + i);
+        aim_rays(&unscaled, rays, count, 3 + i);
+        for (uint32_t k = 0; k < count; ++k) {
+            for (int axis = 0; axis < 3; ++axis) {
+                rays[k].origin[axis] *= scale;
+                rays[k].dir[axis] *= scale;
+            }
+        }
         if (i == 0)
             make_hard(rays, count, numerics == NUMERICS_EXACT);
         else
@@ -135,9 +147,9 @@ TEST(a_tree_that_loses_its_instances_gets_nodes)
     assert_true(count_met(hits, 256) > 64);
 }
 
-/* A ray that starts far behind its origin would meet all boxes if the margin grew with that: more
-   than lavapipe's loops have turns for. */
-TEST(boxes_stay_narrow_for_rays_that_start_far_behind)
+/* A ray would meet all boxes, more than lavapipe's loops have turns for, if the margin grew with
+   how far behind its origin it starts, or for short directions. */
+TEST(boxes_stay_narrow)
 {
     const whit_accel_params trees = {.leaf_limit = 1};
     struct scene *scene = scene_begin(&fixture_log, "large terrain");
@@ -146,8 +158,11 @@ TEST(boxes_stay_narrow_for_rays_that_start_far_behind)
     struct gpu_ray rays[64];
     struct gpu_hit hits[64];
     aim_rays(&f, rays, 64, 3);
-    for (int i = 0; i < 64; ++i)
+    for (int i = 0; i < 64; ++i) {
+        for (int k = 0; i % 3 == 0 && k < 3; ++k)
+            rays[i].dir[k] *= 0x1p-110f;
         rays[i].t_min = i % 2 ? -1e7f : -INFINITY;
+    }
     assert_true(f.renderer->quantized);
     assert_int_equal(trace_beside_twin(&f, false, rays, 64, hits, NULL).hits, 0);
     assert_true(count_met(hits, 64) > 16);
