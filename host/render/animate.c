@@ -42,11 +42,11 @@ static void passes_check(struct renderer *renderer)
     bool outgrown = needed > renderer->node_stack_size;
     if (outgrown)
         renderer->node_stack_size = needed + STACK_SPARE;
+    bool quantized = upload_chooses_quantized(renderer);
     if (outgrown || accel->single_identity != renderer->single_identity ||
-        accel->clipped != renderer->clipped ||
-        upload_chooses_quantized(renderer) != renderer->quantized)
+        accel->clipped != renderer->clipped || quantized != renderer->quantized)
         passes_finish(renderer);
-    renderer->quantized = upload_chooses_quantized(renderer);
+    renderer->quantized = quantized;
     renderer->single_identity = accel->single_identity;
     renderer->clipped = accel->clipped;
 }

@@ -127,7 +127,7 @@ static const struct accel_mesh *only_tree(const struct renderer *renderer)
 
 /* Nodes of 16 bytes are for lavapipe, where a node costs what its loads cost, and for trees that
    are larger than a core's caches: in smaller ones the few steps of a ray do not save what it takes
-   to prepare. */
+   to prepare. Boxes must not grow much on the grid either, unless these nodes are asked for. */
 bool upload_chooses_quantized(const struct renderer *renderer)
 {
     enum { NODES_MIN = 1 << 13 };
@@ -136,7 +136,9 @@ bool upload_chooses_quantized(const struct renderer *renderer)
     if (!tree || !renderer->scene_buffers.texel_loads || renderer->accel->no_trees ||
         device_get_info(renderer->device)->kind != WHIT_DEVICE_CPU || !accel_can_quantize(tree))
         return false;
-    return asked_bytes ? asked_bytes == 16 : tree->node_count >= NODES_MIN;
+    if (asked_bytes)
+        return asked_bytes == 16;
+    return tree->node_count >= NODES_MIN && accel_quantizes_well(renderer->accel, tree);
 }
 
 static whit_result upload_quantized(struct renderer *renderer)

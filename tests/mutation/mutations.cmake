@@ -198,6 +198,9 @@ change(host/accel/quantized.c [[ceil(hi / step)]] [[floor(hi / step)]])
 mutation(quantized_boxes_narrow_for_denormal_t render_quantized RED hits_are_those_of_large_nodes)
 change(shaders/bind/quantized.glsl [[denormal < float(QUANTIZED_STEPS)]] [[denormal >= 0.0]])
 
+mutation(coarse_grids_quantized render_quantized RED only_trees_that_stay_small_on_the_grid_get_nodes)
+change(host/accel/quantized.c [[large < mesh->node_count / 2]] [[large <= mesh->node_count]])
+
 mutation(beam_boxes_too_narrow render_trace RED packets_equal_twin)
 change(shaders/bind/beam.glsl [[vec3(box_margin(lo, hi))]] [[vec3(0.0)]])
 

@@ -167,3 +167,18 @@ TEST(boxes_stay_narrow)
     assert_int_equal(trace_beside_twin(&f, false, rays, 64, hits, NULL).hits, 0);
     assert_true(count_met(hits, 64) > 16);
 }
+
+/* On a ground a thousand times as large as the rest, boxes of the rest have few steps of the grid.
+ */
+TEST(only_trees_that_stay_small_on_the_grid_get_nodes)
+{
+    static const double sizes[] = {10, 1e4};
+    const whit_accel_params trees = {.instances = WHIT_INSTANCES_OFF};
+    for (int i = 0; i < 2; ++i) {
+        struct scene *scene = scene_begin(&fixture_log, "terrain on a ground");
+        scene_put(scene, mesh_terrain(10.0, 2.0, 80, 3), NULL);
+        scene_put(scene, mesh_terrain(sizes[i], 2.0, 1, 3), NULL);
+        own_fixture f = fixture_open(scene, &trees, NULL);
+        assert_int_equal(f.renderer->quantized, i == 0);
+    }
+}
