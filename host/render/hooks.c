@@ -247,6 +247,24 @@ void hooks_describe_file(const struct target *target, char *text, size_t text_by
                  shader->text.files[0].name);
 }
 
+void hooks_describe_loops(const struct target *target, char *text, size_t text_bytes)
+{
+    enum { NAMED = 4 };
+    const whit_shader *shader = target->renderer->params.shader;
+    uint32_t line = 0, count = 0;
+    const char *file = "";
+    for (uint32_t kernel = 0; shader && count == 0 && kernel < HOOK_KERNEL_TEST; ++kernel) {
+        for (; shader_find_loop(shader, kernel << 16 | (count + 1), &file, &line); ++count) {
+            if (count < NAMED)
+                text_add(text, text_bytes, "%s%s:%u", count ? ", " : ": ", file, line);
+        }
+    }
+    if (count > NAMED)
+        text_add(text, text_bytes, " and %u more", count - NAMED);
+    if (count == 0)
+        hooks_describe_file(target, text, text_bytes);
+}
+
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes)
 {
     uint32_t line = 0;

@@ -26,9 +26,10 @@ void hooks_warn_material(const struct renderer *renderer);
    intersect(). */
 WHIT_CHECK whit_result hooks_clear_status(const struct target *target);
 /* These append to `text`: the name of the user's file whose functions the picture has, if there is
-   one; the loop that ran out of iterations, as the status buffer names it; the wrong answer of
-   intersect(), likewise. */
+   one; its loops, any of which the driver may have ended; the loop that ran out of iterations, as
+   the status buffer names it; the wrong answer of intersect(), likewise. */
 void hooks_describe_file(const struct target *target, char *text, size_t text_bytes);
+void hooks_describe_loops(const struct target *target, char *text, size_t text_bytes);
 void hooks_describe_fuel(const struct target *target, char *text, size_t text_bytes);
 void hooks_describe_shape(const struct target *target, char *text, size_t text_bytes);
 

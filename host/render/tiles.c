@@ -77,7 +77,7 @@ whit_result status_check(struct target *target, bool traces)
          "loops of the shader, with whit's own in trace(), visible() and the kernel "
          "around it, took more iterations than the driver allows all loops of a "
          "kernel together (65,535 on lavapipe)",
-         hooks_describe_file},
+         hooks_describe_loops},
         {STATUS_SHAPE, "the answer for the shader's shape is wrong", hooks_describe_shape},
     };
     char text[2048] = "";

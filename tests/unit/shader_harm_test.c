@@ -267,6 +267,19 @@ TEST_IN(loops_without_end_have_no_picture, begin, end)
     all_are_reported();
 }
 
+/* The driver may end such a loop, with those of the traversals, before its fuel does. */
+TEST_IN(loops_that_trace_are_named_too, begin, end)
+{
+    own_whit_shader *shader = load("//@ fuel 30000\n"
+                                   "vec3 shade(Surface s, Optics o, vec3 to_eye) {\n"
+                                   " float sum = 1.0;\n"
+                                   " while (sum > 0.0)\n"
+                                   "  sum += visible(s, s.ns, 1.0).g + visible(s, to_eye, 0.5).g;\n"
+                                   " return vec3(sum); }\n");
+    fail_to_draw(shader, "", "a.glsl:4", "");
+    all_are_reported();
+}
+
 TEST_IN(all_of_the_most_fuel_may_be_used, begin, end)
 {
     own_whit_shader *shader = load("//@ fuel 30000\n//@ toggle more off\n" POST
