@@ -94,7 +94,7 @@ for i in 1 2 3; do
     echo "vec4 a$i(Surface s) { float n = 0.0; for (int i = 0; i < 25000; i++) n += fract(s.p.x); return vec4(n); }"
 done >"$OUT/loops.glsl"
 sed -i '1s/^/\/\/@ fuel 30000\n/' "$OUT/loops.glsl"
-cut "loops of a shader" "loops of the shader, .* all loops of a kernel together .*loops.glsl has functions" \
+cut "loops of a shader" "loops of the shader, .* all loops of a kernel together .*loops.glsl:3, .*loops.glsl:5, .*loops.glsl:7" \
     "$SCENES/cube.json" --size 8x8 --shader "$OUT/loops.glsl"
 rm p.exr
 
