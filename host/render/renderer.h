@@ -240,6 +240,8 @@ struct renderer {
     bool few_kernels;     /* one kernel for several stages and all materials: render_few_kernels */
     bool wide;            /* nodes of eight children are on the device */
     bool quantized;       /* rays that are not in packets read nodes of 16 bytes */
+    const struct accel_mesh *graded; /* the mesh whose tree grades_well tells of; NULL: none yet */
+    bool grades_well;                /* accel_quantizes_well, which looks at all nodes */
     uint32_t
         tile; /* pixels on a side of the last tile that was drawn in little time; 0: none was */
     struct kept_picture kept;

@@ -128,7 +128,7 @@ static const struct accel_mesh *only_tree(const struct renderer *renderer)
 /* Nodes of 16 bytes are for lavapipe, where a node costs what its loads cost, and for trees that
    are larger than a core's caches: in smaller ones the few steps of a ray do not save what it takes
    to prepare. Boxes must not grow much on the grid either, unless these nodes are asked for. */
-bool upload_chooses_quantized(const struct renderer *renderer)
+bool upload_chooses_quantized(struct renderer *renderer)
 {
     enum { NODES_MIN = 1 << 13 };
     const struct accel_mesh *tree = only_tree(renderer);
@@ -138,7 +138,12 @@ bool upload_chooses_quantized(const struct renderer *renderer)
         return false;
     if (asked_bytes)
         return asked_bytes == 16;
-    return tree->node_count >= NODES_MIN && accel_quantizes_well(renderer->accel, tree);
+    if (tree->node_count < NODES_MIN)
+        return false;
+    if (tree != renderer->graded || renderer->accel->flat) /* others stay while instances move */
+        renderer->grades_well = accel_quantizes_well(renderer->accel, tree);
+    renderer->graded = tree;
+    return renderer->grades_well;
 }
 
 static whit_result upload_quantized(struct renderer *renderer)

@@ -17,7 +17,7 @@ WHIT_CHECK whit_result upload_widen(struct renderer *renderer);
 /* Whether device, trees and parameters allow packets. */
 bool upload_can_widen(const struct renderer *renderer);
 /* Whether kernels read nodes of 16 bytes: see renderer->quantized. */
-bool upload_chooses_quantized(const struct renderer *renderer);
+bool upload_chooses_quantized(struct renderer *renderer);
 /* Makes and uploads nodes of eight children, if there are none yet, and sets renderer->wide. */
 WHIT_CHECK whit_result upload_wide(struct renderer *renderer);
 void upload_finish(struct scene_buffers *buffers);
