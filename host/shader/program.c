@@ -314,15 +314,18 @@ static whit_result compile_all(const whit_log *log, struct shader_compiler *comp
     return result;
 }
 
-/* Whether the word stands anywhere in the files. */
-static bool has_word(const struct shader_text *text, const char *word)
+/* Whether the files call or declare a function of this name anywhere: a variable may have it too.
+ */
+static bool has_call(const struct shader_text *text, const char *name)
 {
     for (uint32_t i = 0; i < text->file_count; ++i) {
         struct scan scan;
+        bool named = false;
         scan_begin(&scan, text->files[i].text, text->files[i].bytes);
         while (scan_next(&scan)) {
-            if (scan_is(&scan, SCAN_WORD, word))
+            if (named && scan_is(&scan, SCAN_SIGN, "("))
                 return true;
+            named = scan_is(&scan, SCAN_WORD, name);
         }
     }
     return false;
@@ -337,7 +340,7 @@ static whit_result explain_lack(const whit_log *log, struct shader_compiler *com
     uint32_t file, line;
     whit_result result = WHIT_ERROR_MEMORY;
     for (uint32_t i = 0; i < WHIT_HOOKS; ++i) {
-        if (i != WHIT_HOOK_AOV && has_word(&shader->text, hook_names[i]))
+        if (i != WHIT_HOOK_AOV && has_call(&shader->text, hook_names[i]))
             shader->hooks |= 1u << i;
     }
     if (parts_init(log, shader, TEXT_PLAIN, &parts))
