@@ -213,6 +213,13 @@ if part 0 2; then
         echo "SKIPPED: no povray"
     fi
     check "no scratch files stay" is_empty "$OUT/tmp"
+    # A small picture whose time is subtracted has the kernels of the large one, also of another whit.
+    printf '#!/bin/sh\necho "$*" >>"%s/asked"\nexec "%s" "$@"\n' "$OUT" "$WHIT" >"$OUT/asking"
+    chmod +x "$OUT/asking"
+    expect 0 "frame, beside whit" bench frame "$CUBE" --runs 1 --against "$OUT/asking"
+    check "two large pictures without, two small ones with the kernels" test \
+        "$(sed -n 's/.*--size \([^ ]*\) .* --quiet */\1 /p' "$OUT/asked" | sed 's/ *$//' | tr '\n' ,)" = \
+        "1280x720,32x18 --packets off --classes many,1280x720,32x18 --packets off --classes many,"
 fi
 
 # --- Peers that are not here ---

@@ -51,6 +51,7 @@ whit_result frame_prepare(struct frame *frame)
     whit_result result = bench_load_trees(frame->path, &frame->loaded);
     for (size_t i = 0; result == WHIT_OK && i < sizeof levels / sizeof *levels; ++i)
         result = find_packets(frame, levels[i]);
+    frame->packets[FRAME_AGAINST] = frame->packets[FRAME_WHIT];
     if (result == WHIT_OK)
         result = whit_reference_create(frame->loaded.accel, &params, 0, &frame->reference);
     return result;
@@ -95,9 +96,9 @@ static whit_result run_whit(const struct frame *frame, enum frame_side side, uin
                 "--light-samples", "16", "--quiet", NULL);
     if (side == FRAME_FAST || side == FRAME_EXACT)
         process_add(&process, "--numerics", side == FRAME_FAST ? "fast" : "exact", NULL);
-    /* The small picture gets the kernels that the large one has by whit's own choice, so that the
-       time before the first ray cancels out. */
-    if (!is_other && width == frame->small_width)
+    /* The small picture gets the kernels that the large one has by whit's own choice, which another
+       whit is taken to share, so that the time before the first ray cancels out. */
+    if (width == frame->small_width)
         process_add(&process, "--packets", frame->packets[side] ? "on" : "off", "--classes", "many",
                     NULL);
     process_add_device(&process, frame->bench);
