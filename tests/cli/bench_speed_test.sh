@@ -220,6 +220,9 @@ if part 0 2; then
     check "two large pictures without, two small ones with the kernels" test \
         "$(sed -n 's/.*--size \([^ ]*\) .* --quiet */\1 /p' "$OUT/asked" | sed 's/ *$//' | tr '\n' ,)" = \
         "1280x720,32x18 --packets off --classes many,1280x720,32x18 --packets off --classes many,"
+    printf '#!/bin/sh\ncase "$*" in *--packets*) exit 2 ;; esac\nexec "%s" "$@"\n' "$WHIT" >"$OUT/old"
+    chmod +x "$OUT/old"
+    expect 0 "frame, beside a whit without these options" bench frame "$CUBE" --runs 1 --against "$OUT/old"
 fi
 
 # --- Peers that are not here ---

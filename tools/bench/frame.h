@@ -11,6 +11,8 @@ struct peers {
     char against[BENCH_PATH];    /* program of --against: an absolute path, or a name found by PATH;
                                     or "" */
     bool has_pov, has_embree;
+    bool against_chooses; /* that whit has --packets and --classes; versions before the stages lack
+                             them */
 };
 
 enum frame_side {

@@ -44,6 +44,18 @@ static void find_pov(struct peers *peers, struct table *table)
     }
 }
 
+static bool has_choices(const struct bench *bench, const char *program)
+{
+    struct process process = {.program = program,
+                              .folder = bench->folder,
+                              .is_tried = true,
+                              .out = "choices",
+                              .err = "choices.err"};
+    process_add(&process, program, "render", "--packets", "off", "--classes", "many", "--help",
+                NULL);
+    return process_run(&process, NULL) == WHIT_OK;
+}
+
 whit_result peers_find_against(struct peers *peers, struct table *table)
 {
     const char *against = table->bench->ask.against;
@@ -55,9 +67,10 @@ whit_result peers_find_against(struct peers *peers, struct table *table)
     char *whole = strchr(against, '/') ? realpath(against, NULL) : NULL;
     snprintf(peers->against, sizeof peers->against, "%s", whole ? whole : against);
     free(whole);
-    if (ask_version(table->bench, peers->against, "whit ", line))
-        return WHIT_OK;
-    return CLI_FAIL(WHIT_ERROR_INPUT, "--against %s: is no whit that runs", cli_shown(against));
+    if (!ask_version(table->bench, peers->against, "whit ", line))
+        return CLI_FAIL(WHIT_ERROR_INPUT, "--against %s: is no whit that runs", cli_shown(against));
+    peers->against_chooses = has_choices(table->bench, peers->against);
+    return WHIT_OK;
 }
 
 void peers_find(struct peers *peers, struct table *table, bool wants_pov)

@@ -98,7 +98,7 @@ static whit_result run_whit(const struct frame *frame, enum frame_side side, uin
         process_add(&process, "--numerics", side == FRAME_FAST ? "fast" : "exact", NULL);
     /* The small picture gets the kernels that the large one has by whit's own choice, which another
        whit is taken to share, so that the time before the first ray cancels out. */
-    if (width == frame->small_width)
+    if (width == frame->small_width && (!is_other || frame->peers->against_chooses))
         process_add(&process, "--packets", frame->packets[side] ? "on" : "off", "--classes", "many",
                     NULL);
     process_add_device(&process, frame->bench);
