@@ -323,7 +323,7 @@ static bool has_call(const struct shader_text *text, const char *name)
         bool named = false;
         scan_begin(&scan, text->files[i].text, text->files[i].bytes);
         while (scan_next(&scan)) {
-            if (named && scan_is(&scan, SCAN_SIGN, "("))
+            if (named && (scan_is(&scan, SCAN_SIGN, "(") || scan.kind == SCAN_NEWLINE))
                 return true;
             named = scan_is(&scan, SCAN_WORD, name);
         }

@@ -167,6 +167,7 @@ TEST_IN(hidden_functions_are_told_by_the_compiler, compiler_begin, compiler_end)
         {"// nothing\n/* at all */\nconst float x = 1.0;\n", 0, 0, none},
         {"float f();\nstruct S { float x; };\n", 0, 0, none},
         {"float f() { return 1.0; }\n", 0, 0, none},
+        {"#define M miss\nvec3 M(vec3 dir) { return dir; }\n", 0, 0, none},
         {"float f(float shade) { float post = (shade); return post; }\n", 0, 0, none},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
