@@ -148,11 +148,10 @@ typedef struct whit_renderer_params {
     whit_load_path load_path;
     whit_traversal traversal;
     whit_numerics numerics;
-    /* How the kernels work; these do not change the picture. `node_bytes`: the size of nodes that
-       rays outside of packets read, 16 or 32; 0: chosen by the tree. Instances,
-       WHIT_NUMERICS_FAST, `count` and other devices than CPUs have no nodes of 16 bytes, and use
-       those of 32. `segments`: into how many parts work
-       lists are divided, 1 or 2; 0: chosen for the device. */
+    /* How the kernels work; these do not change the picture. `segments`: into how many parts work
+       lists are divided, 1 or 2; 0: chosen for the device. `node_bytes`: the size of nodes that
+       rays outside of packets read, 16 or 32; 0: chosen by the tree. Instances, WHIT_NUMERICS_FAST,
+       `count` and other devices than CPUs have no nodes of 16 bytes, and use those of 32. */
     whit_packets packets;
     whit_classes classes;
     uint32_t segments, node_bytes;
