@@ -314,8 +314,7 @@ static whit_result compile_all(const whit_log *log, struct shader_compiler *comp
     return result;
 }
 
-/* Whether the files call or declare a function of this name anywhere: a variable may have it too.
- */
+/* Whether the files call or declare a function of this name. A variable may have the name, too. */
 static bool has_call(const struct shader_text *text, const char *name)
 {
     for (uint32_t i = 0; i < text->file_count; ++i) {

@@ -168,8 +168,7 @@ TEST(boxes_stay_narrow)
     assert_true(count_met(hits, 64) > 16);
 }
 
-/* On a ground a thousand times as large as the rest, boxes of the rest have few steps of the grid.
- */
+/* On a ground 1000 times as large as the rest, boxes of the rest have few steps of the grid. */
 TEST(only_trees_that_stay_small_on_the_grid_get_nodes)
 {
     static const double sizes[] = {10, 1e4};

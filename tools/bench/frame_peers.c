@@ -44,6 +44,7 @@ static void find_pov(struct peers *peers, struct table *table)
     }
 }
 
+/* Whether that whit has --packets and --classes. */
 static bool has_choices(const struct bench *bench, const char *program)
 {
     struct process process = {.program = program,
