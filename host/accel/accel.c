@@ -5,6 +5,7 @@
 #include "accel/bvh8.h"
 #include "accel/extent.h"
 #include "accel/flat.h"
+#include "accel/hull.h"
 #include "accel/material_bits.h"
 #include "accel/pose.h"
 #include "accel/validate.h"
@@ -128,6 +129,7 @@ static whit_result meshes_place(struct creation *creation)
         const struct bvh *tree = &creation->trees[i];
         struct accel_mesh *mesh = &accel->meshes[i];
         *mesh = accel_mesh_over(tree);
+        mesh->hull = accel_hull(&accel->scene->meshes[i]);
         mesh->first_node = (uint32_t)nodes;
         mesh->first_triangle = (uint32_t)records;
         mesh->shade_base = (uint32_t)triangles;

@@ -19,6 +19,7 @@ struct accel_mesh {
     uint32_t depth;
     double sah_cost;
     struct bvh_box box;
+    uint32_t hull; /* HULL_*; HULL_NONE in a flat tree */
 };
 
 /* With WHIT_BUILD_NONE: the most primitives over all instances, and the most loop iterations of one

@@ -86,6 +86,7 @@ void accel_instance_enter(struct gpu_instance *out, const struct accel_mesh *mes
     out->center_y = mesh->box.lo[1] * 0.5f + mesh->box.hi[1] * 0.5f;
     out->center_z = mesh->box.lo[2] * 0.5f + mesh->box.hi[2] * 0.5f;
     out->reach = box_reach(&mesh->box);
+    out->hull = mesh->hull;
 }
 
 /* False when floats cannot hold the transform. */

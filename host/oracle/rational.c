@@ -412,9 +412,9 @@ static struct hit_place place_of(const struct rational_hit *hit)
     return (struct hit_place){(double)hit->t, hit->instance, hit->primitive};
 }
 
-static bool is_same(uint32_t instance, uint32_t primitive, const struct rational_hit *hit)
+static bool is_own(uint32_t instance, uint32_t primitive, const struct rational_hit *own)
 {
-    return instance == hit->instance && primitive == hit->primitive;
+    return instance == own->instance && (primitive == own->primitive || own->primitive == SKIP_ALL);
 }
 
 /* Whether a hit is in range and comes after query->behind; a sphere's far end does if its key is
@@ -472,7 +472,7 @@ static void visit_record(struct conservative_walk *walk, uint32_t record, uint32
 {
     struct search *s = (struct search *)walk;
     const struct gpu_triangle *triangle = &walk->accel->triangles[record];
-    bool own = s->query->own && is_same(instance, triangle->primitive, s->query->own);
+    bool own = s->query->own && is_own(instance, triangle->primitive, s->query->own);
     bool sphere = triangle->flags & TRIANGLE_SPHERE;
     if (own && !sphere)
         return;

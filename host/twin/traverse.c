@@ -86,7 +86,7 @@ static bool enters(const struct walk *walk, float near, float far, float share)
 }
 
 static uint32_t step_siblings(struct walk *walk, const struct ray_setup *ray, float near_share,
-                              uint32_t pair, uint32_t base, uint32_t *top)
+                              uint32_t pair, uint32_t skip, uint32_t base, uint32_t *top)
 {
     const struct gpu_bvh_node *a = &walk->accel->nodes[pair], *b = a + 1;
     float a_near, a_far, b_near, b_far, t_min = walk->t_min;
@@ -100,9 +100,9 @@ static uint32_t step_siblings(struct walk *walk, const struct ray_setup *ray, fl
     ++walk->cost.inner_nodes;
     if (walk->level > walk->cost.depth)
         walk->cost.depth = walk->level;
-    bool hit_a = enters(walk, a_near, a_far, near_share);
-    bool hit_b = enters(walk, b_near, b_far, near_share);
     uint32_t ref_a = accel_node_ref(a), ref_b = accel_node_ref(b);
+    bool hit_a = enters(walk, a_near, a_far, near_share) && (skip == REF_DONE || ref_a != skip);
+    bool hit_b = enters(walk, b_near, b_far, near_share) && (skip == REF_DONE || ref_b != skip);
     bool b_nearer = b_near < a_near;
     if (walk->order == ORDER_SIGN)
         b_nearer = ray->negative[a->count >> BVH_AXIS_SHIFT & BVH_AXIS_MASK] !=
@@ -315,8 +315,8 @@ static bool test_record(struct walk *walk, const struct ray_setup *ray, uint32_t
     ++walk->cost.triangles;
     if (walk->accel->flat)
         instance = triangle->flags >> TRIANGLE_INSTANCE_SHIFT;
-    bool self = !walk->next && triangle->primitive == walk->skip_primitive &&
-                instance == walk->skip_instance;
+    bool self = !walk->next && instance == walk->skip_instance &&
+                (triangle->primitive == walk->skip_primitive || walk->skip_primitive == SKIP_ALL);
     if (triangle->flags & TRIANGLE_SPHERE)
         return test_sphere(walk, ray, record, instance, self) && walk->any;
     if (self)
@@ -331,7 +331,7 @@ static void traverse_mesh(struct walk *walk, const struct ray_setup *ray, uint32
     uint32_t top = base, ref = root;
     while (ref != REF_DONE) {
         while (is_inner(ref))
-            ref = step_siblings(walk, ray, 0.0f, ref, base, &top);
+            ref = step_siblings(walk, ray, 0.0f, ref, REF_DONE, base, &top);
         while (is_leaf(ref)) {
             bool done = test_record(walk, ray, ref & BVH_FIRST_MASK, instance);
             ref += 1u - REF_ONE_PRIMITIVE;
@@ -389,10 +389,12 @@ static void traverse_instances(struct walk *walk, uint32_t root)
     struct ray_setup world = world_ray(walk);
     const struct gpu_bvh_node *slack = &walk->accel->nodes[1];
     widen_world_setup(&world, vec3_load(slack->lo), vec3_load(slack->hi));
-    uint32_t top = 0, ref = root;
+    uint32_t skip =
+        walk->skip_primitive == SKIP_ALL ? REF_ONE_PRIMITIVE | walk->skip_instance : REF_DONE;
+    uint32_t top = 0, ref = root == skip ? REF_DONE : root;
     while (ref != REF_DONE) {
         while (is_inner(ref))
-            ref = step_siblings(walk, &world, NEAR_SHARE, ref, 0, &top);
+            ref = step_siblings(walk, &world, NEAR_SHARE, ref, skip, 0, &top);
         if (is_leaf(ref)) {
             uint32_t index = ref & BVH_FIRST_MASK;
             const struct gpu_instance *instance = &walk->accel->instances[index];

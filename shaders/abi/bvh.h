@@ -99,7 +99,7 @@ struct gpu_instance {
     gpu_uint root;       /* ref of the mesh tree, or BVH_EMPTY_REF */
     gpu_uint shade_base; /* index of its primitive 0 among the primitives of all meshes */
     gpu_uint mesh;
-    gpu_uint pad3;
+    gpu_uint hull; /* HULL_* */
     gpu_vec3 forward0; /* object to world, rows */
     gpu_float center_x; /* of the mesh's box, object space */
     gpu_vec3 forward1;
@@ -112,6 +112,11 @@ struct gpu_instance {
     gpu_float pad2;
 };
 GPU_ASSERT_SIZE(gpu_instance, 128)
+
+/* Whether a ray that starts on a primitive of the mesh, and goes away from it, can meet another. */
+#define HULL_NONE   0u /* it may */
+#define HULL_CONVEX 1u /* not if it starts outside: no primitive has another in front of it */
+#define HULL_PLANAR 2u /* it cannot: all primitives lie in one plane */
 
 /* A ray of `whit trace` and its answer. */
 struct gpu_ray {
@@ -171,6 +176,10 @@ struct gpu_work {
 GPU_ASSERT_SIZE(gpu_work, 16)
 
 #define HIT_NONE 0xffffffffu
+
+/* In place of the primitive on which a ray starts: all primitives of its instance, none of which it
+   can meet (HULL_*). */
+#define SKIP_ALL 0xfffffffeu
 
 /* Stands for the record and the instance of a hit on a user's shape (HOOK_INTERSECT), which is in
    no tree. The primitive of such a hit is 0. */

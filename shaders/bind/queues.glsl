@@ -114,14 +114,18 @@ const bool HIT_HAS_KEY = SPEC_NUMERICS == NUMERICS_EXACT && SPEC_MEDIA == MEDIA_
 // itself, and the bounds of the key.
 const uint HIT_ROWS = HIT_HAS_KEY || SPEC_INSTANCED != 0u ? 2u : 1u;
 
-// Instance and primitive of a record. `instance`: the hit's, used with SPEC_INSTANCED.
+// Instance and primitive of a record; with RECORD_SKIPS_ALL, SKIP_ALL for the primitive. `instance`:
+// the hit's, used with SPEC_INSTANCED.
 uvec2 fetch_record_ids(uint record, uint instance)
 {
+    bool all = SPEC_INSTANCED != 0u && (record & RECORD_SKIPS_ALL) != 0u;
+    record = all ? record & ~RECORD_SKIPS_ALL : record;
     bool on_shape = (SPEC_HOOKS & HOOK_INTERSECT) != 0u && record == HIT_SHAPE; // the shape has no record
     uint row = (on_shape ? 0u : record) * TRIANGLE_ROWS;
     if (SPEC_FLAT != 0u)
         instance = fetch_triangle_row(row + 1u).w >> TRIANGLE_INSTANCE_SHIFT;
     uvec2 ids = uvec2(SPEC_INSTANCED != 0u || SPEC_FLAT != 0u ? instance : 0u, fetch_triangle_row(row).w);
+    ids.y = all ? SKIP_ALL : ids.y;
     return on_shape ? uvec2(HIT_SHAPE, 0u) : ids;
 }
 

@@ -9,7 +9,8 @@ struct Ray {
     uvec4 media; // see MEDIA_MAX
     uint steps;  // ray_bounces(), and in the low bits the number of surfaces passed unseen
     uint skip_primitive, skip_instance;
-    uint skip_record; // record of that primitive; set where the ray is to be queued
+    uint skip_record; // record of that primitive, see RECORD_SKIPS_ALL; set where the ray is to be
+                      // queued
     uint kind; // RAY_*; with SPEC_COUNT or SPEC_PROBE
     float way; // distance from the eye to its origin along the rays before it; with
                // SPEC_MINIFICATION

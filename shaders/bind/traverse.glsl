@@ -234,8 +234,9 @@ Siblings meet_siblings(RaySetup ray, float t_min, float near_share, uint pair, H
 }
 
 // One step down: tests both nodes of `pair`, returns the one to visit first, and pushes the other.
-uint step_siblings(RaySetup ray, float t_min, float near_share, uint pair, inout NodeStack stack,
-               inout Hit hit)
+// `skip`: a ref that is not entered; REF_DONE: none.
+uint step_siblings(RaySetup ray, float t_min, float near_share, uint pair, uint skip,
+                   inout NodeStack stack, inout Hit hit)
 {
     Siblings s;
     if (SPEC_QUANTIZED != 0u)
@@ -247,6 +248,8 @@ uint step_siblings(RaySetup ray, float t_min, float near_share, uint pair, inout
         traversal_cost.inner_nodes++;
         traversal_cost.depth = max(traversal_cost.depth, stack.level);
     }
+    s.hit_a = s.hit_a && (skip == REF_DONE || s.ref_a != skip);
+    s.hit_b = s.hit_b && (skip == REF_DONE || s.ref_b != skip);
     bool b_first = s.hit_b && (!s.hit_a || s.b_wanted);
     push_ref(s.hit_a && s.hit_b, b_first ? s.ref_a : s.ref_b, stack, hit.status);
     return pop_ref(!s.hit_a && !s.hit_b, b_first ? s.ref_b : s.ref_a, stack);
@@ -519,7 +522,7 @@ void walk_mesh(const uint mode, RaySetup ray, float t_min, uint instance, uint s
             quantized_ray.end = floatBitsToInt(quantized_distance(farthest(hit)));
         do {
             if (is_inner(ref) && has_room(stack))
-                ref = step_siblings(ray, t_min, 0.0, ref, stack, hit);
+                ref = step_siblings(ray, t_min, 0.0, ref, REF_DONE, stack, hit);
         } while (is_inner(ref) && has_room(stack));
         do {
             if (is_leaf(ref)) {
@@ -581,9 +584,9 @@ RaySetup make_local_setup(uint instance, vec3 origin, vec3 dir)
 
 // Goes on through the tree over instances at `ref`, whose leaves hold one instance each, until
 // REF_DONE or until a record is deferred. `inside`: it first finishes the mesh tree of that leaf,
-// at `mesh_ref`.
+// at `mesh_ref`. `skip`: the leaf that the ray need not enter.
 void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float t_min,
-                    uint skip_instance, uint skip_primitive, inout uint ref,
+                    uint skip_instance, uint skip_primitive, uint skip, inout uint ref,
                     inout NodeStack stack, inout RaySetup local, inout uint mesh_ref,
                     inout NodeStack mesh_stack, bool inside, inout Hit hit, out bool deferred)
 {
@@ -591,7 +594,7 @@ void walk_instances(const uint mode, RaySetup ray, vec3 origin, vec3 dir, float 
     do {
         do {
             if (is_inner(ref) && has_room(stack) && !inside)
-                ref = step_siblings(ray, t_min, NEAR_SHARE, ref, stack, hit);
+                ref = step_siblings(ray, t_min, NEAR_SHARE, ref, skip, stack, hit);
         } while (is_inner(ref) && has_room(stack) && !inside);
         if (is_leaf(ref)) {
             uint instance = ref & BVH_FIRST_MASK;
@@ -624,12 +627,13 @@ void traverse_instances(const uint mode, vec3 origin, vec3 dir, float t_min, uin
     fetch_slack(own, others);
     widen_world_setup(ray, own, others);
     NodeStack stack = make_stack(0u, 0u), mesh_stack = stack;
-    uint ref = root, mesh_ref = REF_DONE;
+    uint skip = skip_primitive == SKIP_ALL ? REF_ONE_PRIMITIVE | skip_instance : REF_DONE;
+    uint ref = root == skip ? REF_DONE : root, mesh_ref = REF_DONE;
     bool inside = false;
     do {
         bool deferred;
-        walk_instances(mode, ray, origin, dir, t_min, skip_instance, skip_primitive, ref, stack,
-                       local, mesh_ref, mesh_stack, inside, hit, deferred);
+        walk_instances(mode, ray, origin, dir, t_min, skip_instance, skip_primitive, skip, ref,
+                       stack, local, mesh_ref, mesh_stack, inside, hit, deferred);
         inside = settles(mode); // the rays that wait are in a mesh tree
         if (settles(mode) && deferred)
             look_at_leaf(mode, local, origin, dir, t_min, ref & BVH_FIRST_MASK, skip_instance,
@@ -646,7 +650,7 @@ bool is_usable(vec3 origin, vec3 dir)
 }
 
 // Finds a hit with t_min <= t <= t_max. Primitive `skip_primitive` of instance `skip_instance`,
-// where the ray starts, does not count; but a sphere is hit again, at its far side, by a ray that
+// where the ray starts, does not count, nor does any of it with SKIP_ALL; but a sphere is hit again, at its far side, by a ray that
 // goes inwards. Equal t goes to the smaller instance, then primitive. `root`: a ref of the instance
 // tree, or without SPEC_INSTANCED of the only mesh tree (with SPEC_FLAT, that of the whole scene).
 // Rays that are not finite hit nothing.

@@ -70,6 +70,16 @@ InstanceFrame fetch_instance_frame(uint instance)
     return frame;
 }
 
+// Whether a ray that starts on the instance and goes away from it cannot meet it again. `outside`: it
+// goes to the side from which the instance's triangles are met. `instance` may be HIT_SHAPE.
+bool leaves_instance(uint instance, bool outside)
+{
+    if (SPEC_INSTANCED == 0u || instance == HIT_SHAPE)
+        return false;
+    uint hull = fetch_instance_row(instance * INSTANCE_ROWS + 3u).w;
+    return hull == HULL_PLANAR || (hull == HULL_CONVEX && outside);
+}
+
 // The centre of the box of an instance's mesh, in object space; without SPEC_INSTANCED all
 // instances have that of the only tree.
 vec3 fetch_mesh_center(uint instance)

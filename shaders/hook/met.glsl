@@ -18,6 +18,7 @@ struct Met {
     Ray ray; // as it arrives: its weight is that of the surface's light in the picture
     Hit hit;
     Surface s;
+    bool inside; // it is met from inside; set by fetch_met
     gpu_material m;
     Crossing c;
 };
@@ -50,8 +51,9 @@ Met fetch_met(uint id, bool alive, bool counts, inout uint status)
     met_dir = met.ray.dir;
     met.s = fetch_surface(met.hit);
     met.m = fetch_material(met.s.material);
-    bool inside = face_ray(met.s, met.ray.dir);
-    met.c = cross_surface(alive && counts ? met.slot : HIT_NONE, met.ray, met.hit, met.s, met.m, inside, status);
+    met.inside = face_ray(met.s, met.ray.dir);
+    met.c = cross_surface(alive && counts ? met.slot : HIT_NONE, met.ray, met.hit, met.s, met.m,
+                          met.inside, status);
     if (SPEC_MINIFICATION != 0u) {
         met.ray.way += met.hit.t;
         take_footprint(met.s, met.ray.dir, texel_area(slot_pixel(met.slot), met.ray.way));

@@ -133,6 +133,12 @@ Calls call_through(Ray ray, inout uint status)
     return calls;
 }
 
+// The word that names the record on which a ray starts. `leaves`: see leaves_instance.
+uint start_of_ray(uint record, bool leaves)
+{
+    return leaves ? record | RECORD_SKIPS_ALL : record;
+}
+
 // Puts a ray into the next generation.
 void send(uint slot, Ray ray, vec3 dir, vec3 weight, uint steps, inout uint next)
 {
@@ -161,7 +167,8 @@ uint send_calls(bool alive, Met met, Optics o, Calls calls, inout uint status)
     Ray beyond = met.ray;
     beyond.origin = offset_origin(met.c.p, met.c.error, -met.c.ng);
     beyond.skip_instance = met.c.instance;
-    beyond.skip_record = met.c.record;
+    bool outwards = met.inside && met.c.record == met.hit.triangle;
+    beyond.skip_record = start_of_ray(met.c.record, leaves_instance(met.c.instance, outwards));
     if ((refracts() || SPEC_MEDIA != 0u) && calls.wanted[0]) {
         beyond.media = o.thin ? met.ray.media : met.c.after;
         beyond.kind = RAY_REFRACTED;
@@ -178,7 +185,8 @@ uint send_calls(bool alive, Met met, Optics o, Calls calls, inout uint status)
         Ray back = met.ray;
         back.origin = offset_origin(met.s.p, met.s.error, met.s.ng);
         back.skip_instance = met.hit.instance;
-        back.skip_record = met.hit.triangle;
+        back.skip_record = start_of_ray(met.hit.triangle,
+                                        leaves_instance(met.hit.instance, !met.inside));
         back.media = met.c.before;
         back.kind = RAY_REFLECTED;
         send(met.slot, back, calls.dir[2], calls.weight[2], calls.steps, next);
@@ -220,10 +228,11 @@ Lit lit_hit(uint id, Met met, Optics o, bool catcher)
     Lit lit = lit_surface(met.s, o, weight, met.c.before);
     lit.flags |= catcher ? LIT_CATCHER : 0u;
     lit.id = id;
-    lit.record = met.hit.triangle;
+    bool leaves = leaves_instance(met.hit.instance, !met.inside);
+    lit.record = start_of_ray(met.hit.triangle, leaves);
     lit.view = -met.ray.dir;
     lit.skip_instance = met.hit.instance;
-    lit.skip_primitive = met.hit.primitive;
+    lit.skip_primitive = leaves ? SKIP_ALL : met.hit.primitive;
     return lit;
 }
 

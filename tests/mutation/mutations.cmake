@@ -390,6 +390,16 @@ change(host/hard/judge.c hard_hash [[[^ ]+\.primitive]] [[0]])
 mutation(self_hits_unseen accel_hard RED self_hits_are_seen)
 change(host/hard/judge.c judge_ray [[[^ (]+truth == HARD_MUST_MISS]] [[false]])
 
+mutation(valleys_as_ridges accel_hull RED valleys_are_seen)
+change(host/accel/hull.c is_behind [[distance <= -ROUNDING \* size]] [[true]])
+
+mutation(insides_as_outsides render_shadow RED light_does_not_get_into_a_convex_body)
+change(shaders/bind/trees.glsl [[(hull == HULL_CONVEX && outside)]] [[hull == HULL_CONVEX]])
+
+mutation(own_bodies_entered render_shadow RED rays_that_leave_a_convex_body_do_not_enter_it)
+change(shaders/bind/traverse.glsl [[skip_primitive == SKIP_ALL ? REF_ONE_PRIMITIVE | skip_instance :]]
+  [[false ? REF_ONE_PRIMITIVE | skip_instance :]])
+
 mutation(open_edges_unseen accel_hard RED surfaces_are_described)
 change(host/hard/topology.c count_edge [[open_edges \+= [^;]*]] [[open_edges += 0]])
 

@@ -423,3 +423,44 @@ TEST(narrow_gaps_stay_dark)
         assert_int_equal(narrow, 0);
     }
 }
+
+static uint64_t instances_entered(struct scene_mesh mesh)
+{
+    const whit_renderer_params params = {.width = 33, .height = 33, .count = true};
+    struct scene *scene = dark_scene((double[]){0, 3, 4}, (double[]){0, 0, 0});
+    struct scene_material white = matte(1, 1, 1);
+    uint32_t index = scene_put(scene, mesh, &(struct put){.material = &white});
+    scene_put_again(scene, index, &(struct put){.at = {500, 0, 0}});
+    scene_put_sun(scene, -0.2, -1, 0.1, 1.0f);
+    own_picture picture = picture_of(scene, NULL, &params);
+    assert_true(picture.stats.rays_shadow > 50);
+    return picture.stats.costs[RAY_SHADOW].instances;
+}
+
+/* What a body cannot shade itself with is not tested: accel_hull. */
+TEST(rays_that_leave_a_convex_body_do_not_enter_it)
+{
+    assert_int_equal(instances_entered(mesh_plane(2)), 0);
+    assert_int_equal(instances_entered(mesh_box(1, 1, 1)), 0);
+    assert_int_equal(instances_entered(mesh_balls((const double[]){0, 0, 0, 1}, 1)), 0);
+    /* Smooth normals: a few rays to a light below their triangle's plane are tested. */
+    assert_true(instances_entered(mesh_icosphere(1, 2)) < 10);
+    assert_true(instances_entered(mesh_torus(1.0, 0.3, 20, 10)) > 50);
+}
+
+/* The light is outside of the body in which the camera is. */
+TEST(light_does_not_get_into_a_convex_body)
+{
+    const whit_renderer_params params = {.width = 33, .height = 33, .depth = 2};
+    struct scene_mesh bodies[] = {mesh_box(4, 4, 4), mesh_icosphere(4, 2),
+                                  mesh_balls((const double[]){0, 0, 0, 4}, 1)};
+    for (size_t i = 0; i < sizeof bodies / sizeof *bodies; ++i) {
+        struct scene *scene = dark_scene((double[]){0, 0.5, 1}, (double[]){0, 0, 0});
+        add_object(scene, bodies[i], matte(1, 1, 1), 0, 0, 0);
+        add_object(scene, mesh_plane(1), matte(1, 1, 1), 500, 0, 0);
+        scene_put_sun(scene, -0.2, -1, 0.1, 1.0f);
+        own_image image = color_of(scene, NULL, &params);
+        for (size_t k = 0; k < 33 * 33; ++k)
+            assert_true(image.pixels[4 * k] == 0.0f);
+    }
+}
