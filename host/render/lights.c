@@ -76,6 +76,14 @@ uint32_t lights_kinds(const struct scene_pose *pose)
     return kinds;
 }
 
+bool lights_share_hits(const struct scene_pose *pose)
+{
+    bool reaches_all = true;
+    for (uint32_t i = 0; i < pose->light_count; ++i)
+        reaches_all &= pose->lights[i].kind != WHIT_LIGHT_SPOT && pose->lights[i].range == 0.0f;
+    return pose->light_count > LIGHT_LISTS || (pose->light_count > 1 && reaches_all);
+}
+
 uint32_t lights_samples(const struct renderer *renderer)
 {
     uint32_t asked = renderer->params.light_samples;

@@ -108,7 +108,8 @@ whit_result stages_job_run(struct device *device, const struct stages_job *job,
                               .asks = job->asks,
                               .asks_directly = job->asks_directly,
                               .hit_rows = variant_hit_rows(&job->spec),
-                              .lights_each = job->spec.SPEC_LIGHTS_EACH};
+                              .lights_each = job->spec.SPEC_LIGHTS_EACH,
+                              .shares_hits = job->spec.SPEC_LIGHTS_EACH > 1};
     memcpy(out->of, job->of, sizeof out->of);
     for (uint32_t i = 0; i < job->classes; ++i)
         out->calls[i] = variant_calls_rays(&job->stages[STAGE_SHADE + i].spec) ||

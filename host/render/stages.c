@@ -44,8 +44,14 @@ static size_t list_offset(uint32_t list)
     return offsetof(struct gpu_generation, lists) + list * sizeof(struct gpu_items);
 }
 
+/* Whether each light has a row in whit_stats.stages. */
+static bool has_rows_of_lights(const struct tile_run *run)
+{
+    return run->target->renderer->frame.light_count <= LIGHT_LISTS;
+}
+
 /* The row of whit_stats.stages that a dispatch counts in: RENDER_STAGE_*. */
-static uint32_t row_of(enum stage stage, uint32_t list)
+static uint32_t row_of(const struct tile_run *run, enum stage stage, uint32_t list)
 {
     static const uint32_t rows[STAGE_COUNT] = {
         [STAGE_CAMERA] = RENDER_STAGE_CAMERA,      [STAGE_MISS] = RENDER_STAGE_CAMERA,
@@ -58,7 +64,8 @@ static uint32_t row_of(enum stage stage, uint32_t list)
     };
     if (stage >= STAGE_HIT && stage <= STAGE_AOV)
         return RENDER_STAGE_SHADE + (list - LIST_HITS);
-    return rows[stage] + (rows[stage] == RENDER_STAGE_SHADOW ? list - LIST_LIGHTS : 0);
+    bool by_light = rows[stage] == RENDER_STAGE_SHADOW && has_rows_of_lights(run);
+    return rows[stage] + (by_light ? run->chunk.light : 0);
 }
 
 static whit_result begin_submission(struct tile_run *run)
@@ -131,7 +138,7 @@ static whit_result dispatch(struct tile_run *run, enum stage stage, uint32_t lis
     if (result != WHIT_OK)
         return result;
     chunk->list = list;
-    stage_times_next(target, row_of(stage, list));
+    stage_times_next(target, row_of(run, stage, list));
     if (pass->deferred) {
         render_clear_deferred(target->renderer, deferred);
         commands_barrier(commands);
@@ -211,17 +218,18 @@ static whit_result record_hits(struct tile_run *run)
     return result;
 }
 
+/* In a timed tile each of the lights that have a row in whit_stats.stages has its own dispatch. */
 static whit_result record_lights(struct tile_run *run)
 {
-    const struct renderer *renderer = run->target->renderer;
-    bool camera = run->chunk.generation == 0, by_light = renderer->frame.light_count <= LIGHT_LISTS;
-    whit_result result = WHIT_OK;
-    const struct stage_set *set = &run->target->stages.set;
+    const struct target *target = run->target;
+    const struct stage_set *set = &target->stages.set;
+    bool camera = run->chunk.generation == 0, few = has_rows_of_lights(run);
     bool asks = lights_directly(run) ? set->asks_directly : set->asks;
-    uint32_t lights = asks ? renderer->frame.light_count : 0;
-    uint32_t each = by_light ? 1 : set->lights_each;
+    uint32_t lights = asks ? target->renderer->frame.light_count : 0;
+    uint32_t each = few && target->stages.times.on ? 1 : set->lights_each;
+    whit_result result = WHIT_OK;
     for (uint32_t i = 0; result == WHIT_OK && i < lights; i += each) {
-        uint32_t list = LIST_LIGHTS + (by_light ? i : 0);
+        uint32_t list = LIST_LIGHTS + (few && !set->shares_hits ? i : 0);
         run->chunk.light = i;
         run->chunk.lights = lights - i < each ? lights - i : each;
         result = dispatch_own(run, STAGE_SHAPE_LIGHT, list);

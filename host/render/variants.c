@@ -85,14 +85,16 @@ static bool writes_wide_rows(const struct device *device)
 }
 
 /* A user's shape is asked about one light at a time, and so is a probed pixel. The many rays to a
-   light with an area, rays without trees, and the integers of NUMERICS_EXACT can fill an
+   light with an area, rays without trees, and integers of NUMERICS_EXACT in all kernels can fill an
    invocation's loops, whose iterations drivers limit. Where others do, stages_sample() goes on with
-   one light at a time. */
+   one light at a time. At NUMERICS_EXACT without packets, STAGE_SHADE_DIRECT may leave some lights
+   of a hit to the shadow stages. */
 static bool lights_share_dispatches(const struct target *target)
 {
     const struct renderer *renderer = target->renderer;
-    return !target->probed && renderer->frame.light_count > LIGHT_LISTS &&
-           !renderer->accel->no_trees && renderer->params.numerics != NUMERICS_EXACT &&
+    bool exact = renderer->params.numerics == NUMERICS_EXACT;
+    return !target->probed && lights_share_hits(&renderer->pose) && !renderer->accel->no_trees &&
+           (!exact || (variant_has_deferred(target) && renderer->packets)) &&
            (lights_kinds(&renderer->pose) & LIGHT_FLAT_BITS) == 0 &&
            !shader_has(renderer->params.shader, WHIT_HOOK_INTERSECT);
 }

@@ -5,7 +5,7 @@
 #include "device/pipeline.h"
 #include "render/renderer.h"
 
-/* SPEC_LIGHTS_EACH in scenes of more than LIGHT_LISTS lights: a lit hit is read, and its sum
+/* SPEC_LIGHTS_EACH where lights share hits (lights_share_hits): a lit hit is read, and its sum
    stored, once for all lights of a dispatch. More would gain little, and a submission may take 100
    ms. */
 enum { LIGHTS_EACH = 8 };

@@ -48,7 +48,8 @@
 #define LIST_LIGHTS    4u /* the lit hits that a light may reach, one list for each light */
 #define LISTS_COUNT    12u
 #define CLASSES_MAX   2u /* classes of materials, CLASS_* */
-#define LIGHT_LISTS    8u /* with more lights, the first list serves all of them */
+#define LIGHT_LISTS    8u /* with more lights, and with SPEC_LIGHTS_EACH above 1, the first list
+                             serves all of them */
 
 /* A list: the arguments of the indirect dispatch over it, and its numbers of items. Lists have two
    segments where SPEC_SEGMENTS is 2: the first half of a dispatch's workgroups fills one from the
@@ -57,7 +58,7 @@
 struct gpu_items {
     gpu_uint groups, groups_y, groups_z, pad;
     gpu_uint front, back;
-    gpu_uint shadow_rays; /* traced from the list's hits to its light */
+    gpu_uint shadow_rays; /* to the list's light; with more than LIGHT_LISTS lights, to all */
     gpu_uint pad0;
 };
 GPU_ASSERT_SIZE(gpu_items, 32)

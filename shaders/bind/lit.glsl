@@ -35,10 +35,10 @@ uvec4 fetch_lit_row(uint row)
     return lit_rows[row];
 }
 
-// The list from which a light takes its hits.
-uint list_of_light(uint light)
+// Whether each light takes its hits from a list of its own; else all take them from the first one.
+bool lights_have_lists()
 {
-    return frame.light_count <= LIGHT_LISTS ? light : 0u;
+    return SPEC_LIGHTS_EACH == 1u && frame.light_count <= LIGHT_LISTS;
 }
 
 uint fetch_listed_lit(uint item)
@@ -148,8 +148,8 @@ uint reaching_lights(Lit lit)
 // Stores a lit hit, and appends it to the list of each of `lights` (bit i: light i) that may reach it.
 void list_lit(bool wanted, uint lights, Lit lit, inout uint status)
 {
-    uint g = chunk.generation, lists = list_of_light(frame.light_count - 1u) + 1u, i = 0u;
-    uint reaching = frame.light_count <= LIGHT_LISTS ? reaching_lights(lit) & lights : 1u;
+    uint g = chunk.generation, lists = lights_have_lists() ? frame.light_count : 1u, i = 0u;
+    uint reaching = lights_have_lists() ? reaching_lights(lit) & lights : 1u;
     wanted = wanted && reaching != 0u;
     uint index = append_items(g, LIST_LIT, uint(wanted), SPEC_LIST_GROUP);
     uint room = SPEC_SEGMENTS == 2u ? chunk.lit_capacity / 2u : chunk.lit_capacity;

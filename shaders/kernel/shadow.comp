@@ -58,6 +58,7 @@ vec3 sum_of[SPEC_PACKET_RAYS], open_of[SPEC_PACKET_RAYS]; // of the current ligh
 // shadows. With one: what it adds to both, which are read when they are stored, as values that are
 // kept during traversal take time.
 vec3 own_of[SPEC_PACKET_RAYS], seen_of[SPEC_PACKET_RAYS];
+// Number of shadow rays; with several lights a bit for each.
 uint rays_of[SPEC_PACKET_RAYS], status_of[SPEC_PACKET_RAYS];
 
 void add_arrival(uint r, gpu_light light, uint point)
@@ -70,7 +71,8 @@ void add_arrival(uint r, gpu_light light, uint point)
     if (SPEC_PROBE != 0u && SPEC_SHADOWS != 0u && a.wanted)
         probe_shadow_ray(lit_of[r].id, light_index * turns_each() + point, packet_origin[r],
                          packet_dir[r], packet_t_max[r], packet_skip[r], packet_hits[r], share);
-    rays_of[r] += uint(a.wanted);
+    uint place = SPEC_LIGHTS_EACH > 1u ? light_index - chunk.light : 0u;
+    rays_of[r] += uint(a.wanted) << place;
     if ((SPEC_LIGHTS & LIGHT_FLAT_BITS) != 0u && is_flat(light)) {
         float weight = a.faces ? a.cos_light * a.strength : 0.0;
         emitter_of[r].weight += weight;
@@ -141,6 +143,29 @@ void trace_shadow_rays(gpu_light light, bool alive[SPEC_PACKET_RAYS], uint item[
         report_status(STATUS_UNFINISHED_LOOP);
 }
 
+// Counts the rays to each light from hits that are done.
+void count_shadow_rays(bool done[SPEC_PACKET_RAYS])
+{
+    bool more = false;
+    light_index = chunk.light;
+    do {
+        uint rays = 0u, row = LIST_LIGHTS + (frame.light_count <= LIGHT_LISTS ? light_index : 0u);
+        EACH_RAY {
+            uint own = rays_of[r];
+            if (SPEC_LIGHTS_EACH > 1u)
+                own = own >> (light_index - chunk.light) & 1u;
+            rays += done[r] ? own : 0u;
+        }
+        rays = add_up_lanes(rays);
+        if (is_first_lane() && rays != 0u)
+            atomicAdd(generations[chunk.generation].lists[row].shadow_rays, rays);
+        light_index++;
+        more = SPEC_LIGHTS_EACH > 1u && light_index < chunk.light + chunk.lights;
+    } while (more);
+    if (more)
+        report_status(STATUS_UNFINISHED_LOOP);
+}
+
 void main()
 {
     load_frame();
@@ -174,22 +199,21 @@ void main()
     } while (another_iteration(more));
     if (more)
         report_status(STATUS_UNFINISHED_LOOP);
-    uint rays = 0u, status = 0u;
-    bool waits[SPEC_PACKET_RAYS];
+    uint status = 0u;
+    bool waits[SPEC_PACKET_RAYS], done[SPEC_PACKET_RAYS];
     EACH_RAY {
         waits[r] = alive[r] && must_wait(status_of[r]);
-        if (alive[r] && !waits[r]) {
+        done[r] = alive[r] && !waits[r];
+        if (done[r]) {
             store_own(r);
-            rays += rays_of[r];
             status |= status_of[r];
         }
     }
     if (has_bounds_alone())
         list_deferred_rays(waits, item);
     report_status(status);
-    rays = add_up_lanes(rays);
-    if (SPEC_SHADOWS != 0u && is_first_lane() && rays != 0u)
-        atomicAdd(generations[chunk.generation].lists[chunk.list].shadow_rays, rays);
+    if (SPEC_SHADOWS != 0u)
+        count_shadow_rays(done);
 #ifdef HOOKS
     report_hooks();
 #endif

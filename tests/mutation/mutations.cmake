@@ -400,6 +400,15 @@ mutation(own_bodies_entered render_shadow RED rays_that_leave_a_convex_body_do_n
 change(shaders/bind/traverse.glsl [[skip_primitive == SKIP_ALL ? REF_ONE_PRIMITIVE | skip_instance :]]
   [[false ? REF_ONE_PRIMITIVE | skip_instance :]])
 
+mutation(all_lights_counted_as_one render_light RED lights_that_reach_all_share_hits)
+change(shaders/kernel/shadow.comp [[? light_index : 0u);]] [[? chunk.light : 0u);]])
+
+mutation(waiting_hits_counted_twice render_light RED lights_that_reach_all_share_hits)
+change(shaders/kernel/shadow.comp [[count_shadow_rays(done);]] [[count_shadow_rays(alive);]])
+
+mutation(timed_lights_share_a_dispatch render_light RED lights_that_reach_all_share_hits)
+change(host/render/stages.c [[few && target->stages.times.on ? 1 :]] [[]])
+
 mutation(open_edges_unseen accel_hard RED surfaces_are_described)
 change(host/hard/topology.c count_edge [[open_edges \+= [^;]*]] [[open_edges += 0]])
 

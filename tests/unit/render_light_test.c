@@ -428,6 +428,56 @@ TEST(many_lights_are_added_in_their_order)
                      LAMPS - (LAMPS + LIGHTS_EACH - 1) / LIGHTS_EACH);
 }
 
+/* A ring under three lights. `black`: and a spot that sends none, for which each light has its own
+   list of hits. */
+static struct scene *few_lamps_scene(bool black)
+{
+    struct scene *scene = floor_scene(eye_height);
+    struct scene_material mirror = matte(0.5, 1, 1);
+    set_rgb(mirror.reflection, 0.3f, 0.3f, 0.3f);
+    add_object(scene, mesh_torus(1, 0.4, 40, 30), mirror, 0, 0.5, 0);
+    scene_put_lamp(scene, 1, 3, 0, 8.0f); /* in the plane of edges of the ring: some rays wait */
+    scene_put_sun(scene, -0.3, -1, 0.4, 0.4f);
+    scene_put_lamp(scene, -2, 0.3, 1, 3.0f);
+    if (black)
+        scene_put_light(scene, (struct scene_light){.kind = WHIT_LIGHT_SPOT,
+                                                    .node = SCENE_NONE,
+                                                    .position = {0, 5, 0},
+                                                    .direction = {0, -1, 0},
+                                                    .versine_outer = 0.1f});
+    return scene;
+}
+
+/* Lights without range and cone share hits and dispatches, where not some of a hit's lights are
+   added while it is shaded (at NUMERICS_EXACT without packets). Each is counted alone, and in timed
+   tiles each has its dispatch. */
+TEST(lights_that_reach_all_share_hits)
+{
+    for (int i = 0; i < 8; ++i) {
+        const whit_renderer_params params = {.width = 49,
+                                             .height = 49,
+                                             .depth = 3,
+                                             .tile_size = 16,
+                                             .numerics = i & 1 ? WHIT_NUMERICS_EXACT
+                                                               : WHIT_NUMERICS_WATERTIGHT,
+                                             .packets = i & 2 ? WHIT_PACKETS_ON : WHIT_PACKETS_OFF,
+                                             .time_stages = i & 4};
+        own_fixture alone = fixture_open(few_lamps_scene(true), NULL, &params);
+        own_fixture together = fixture_open(few_lamps_scene(false), NULL, &params);
+        own_picture a = render_picture(&alone), b = render_picture(&together);
+        assert_same_picture("each light alone", &a, &b);
+        assert_false(alone.renderer->picture.stages.set.shares_hits);
+        assert_int_equal(together.renderer->picture.stages.set.shares_hits, (i & 3) != 1);
+        for (int light = 0; light < 3; ++light) {
+            const whit_stage *one = &a.stats.stages[RENDER_STAGE_SHADOW + light],
+                             *other = &b.stats.stages[RENDER_STAGE_SHADOW + light];
+            assert_true(one->rays > 500 && one->rays == other->rays);
+            assert_true((other->ms > 0.0) == ((i & 4) != 0));
+        }
+        assert_true((b.stats.stages[RENDER_STAGE_DEFERRED].rays > 0) == (i & 1));
+    }
+}
+
 /* Slivers in the way of rays, which go through the boxes of all and hit none, under several lamps.
    `black`: and a light with an area that sends none. */
 static struct picture slivers_picture(bool black)
