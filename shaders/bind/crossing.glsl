@@ -17,6 +17,7 @@ struct Crossing {
     // Where light that passes goes on: at the last of the surfaces that are crossed here.
     vec3 p, error, ng;
     uint instance, record;
+    bool outwards; // it is left there, not entered
 };
 
 float largest_of(vec3 v)
@@ -132,6 +133,7 @@ void gather_touching(uint slot, Ray ray, Hit hit, inout Crossed crossed, inout C
                 c.ng = other.ng;
                 c.instance = hit.instance;
                 c.record = hit.triangle;
+                c.outwards = leaves;
                 uint other_rank = medium_priority(other.material + 1u) * 2u + uint(!leaves);
                 if (other_rank > rank) {
                     rank = other_rank;
@@ -169,6 +171,7 @@ Crossing cross_surface(uint slot, Ray ray, Hit hit, inout Surface s, inout gpu_m
     c.ng = s.ng;
     c.instance = hit.instance;
     c.record = hit.triangle;
+    c.outwards = inside;
     if (SPEC_MEDIA == 0u || SPEC_CROSSINGS == 0u || !bounds_medium(m))
         return c;
     if (is_crossed_already(ray, hit, s, inside)) {

@@ -24,8 +24,8 @@ struct Lit {
     vec3 absorption; // of the media around
     uint flags;     // LIT_*
     uint id, skip_instance, skip_primitive;
-    uint record; // of the primitive, see RECORD_SKIPS_ALL; set only for store_lit: fetch_lit gives skip_instance and
-                 // skip_primitive
+    uint record; // of the primitive, see RECORD_SKIPS_ALL; set only for store_lit: fetch_lit gives
+                 // skip_instance and skip_primitive
 };
 
 uvec4 fetch_lit_row(uint row)

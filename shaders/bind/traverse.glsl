@@ -650,10 +650,10 @@ bool is_usable(vec3 origin, vec3 dir)
 }
 
 // Finds a hit with t_min <= t <= t_max. Primitive `skip_primitive` of instance `skip_instance`,
-// where the ray starts, does not count, nor does any of it with SKIP_ALL; but a sphere is hit again, at its far side, by a ray that
-// goes inwards. Equal t goes to the smaller instance, then primitive. `root`: a ref of the instance
-// tree, or without SPEC_INSTANCED of the only mesh tree (with SPEC_FLAT, that of the whole scene).
-// Rays that are not finite hit nothing.
+// where the ray starts, does not count, nor does any of it with SKIP_ALL; but a sphere is hit again,
+// at its far side, by a ray that goes inwards. Equal t goes to the smaller instance, then primitive.
+// `root`: a ref of the instance tree, or without SPEC_INSTANCED of the only mesh tree (with
+// SPEC_FLAT, that of the whole scene). Rays that are not finite hit nothing.
 Hit traverse(const uint mode, vec3 origin, vec3 dir, float t_min, float t_max, uint root,
              uint skip_instance, uint skip_primitive)
 {

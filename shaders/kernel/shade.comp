@@ -167,8 +167,8 @@ uint send_calls(bool alive, Met met, Optics o, Calls calls, inout uint status)
     Ray beyond = met.ray;
     beyond.origin = offset_origin(met.c.p, met.c.error, -met.c.ng);
     beyond.skip_instance = met.c.instance;
-    bool outwards = met.inside && met.c.record == met.hit.triangle;
-    beyond.skip_record = start_of_ray(met.c.record, leaves_instance(met.c.instance, outwards));
+    beyond.skip_record = start_of_ray(met.c.record,
+                                      leaves_instance(met.c.instance, met.c.outwards));
     if ((refracts() || SPEC_MEDIA != 0u) && calls.wanted[0]) {
         beyond.media = o.thin ? met.ray.media : met.c.after;
         beyond.kind = RAY_REFRACTED;

@@ -400,6 +400,9 @@ mutation(own_bodies_entered render_shadow RED rays_that_leave_a_convex_body_do_n
 change(shaders/bind/traverse.glsl [[skip_primitive == SKIP_ALL ? REF_ONE_PRIMITIVE | skip_instance :]]
   [[false ? REF_ONE_PRIMITIVE | skip_instance :]])
 
+mutation(entered_bodies_left render_media RED mirrored_bodies_share_a_triangle)
+change(shaders/bind/crossing.glsl gather_touching [[c.outwards = leaves]] [[c.outwards = true]])
+
 mutation(all_lights_counted_as_one render_light RED lights_that_reach_all_share_hits)
 change(shaders/kernel/shadow.comp [[? light_index : 0u);]] [[? chunk.light : 0u);]])
 

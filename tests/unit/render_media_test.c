@@ -169,6 +169,32 @@ TEST(shared_faces_are_found_at_every_level)
     image_finish(&images[1]);
 }
 
+/* Two bodies that touch in the triangle that a ray leaves and enters: one mesh and its mirror
+ * image. */
+TEST(mirrored_bodies_share_a_triangle)
+{
+    const whit_renderer_params params = {.width = 40, .height = 40, .depth = 4};
+    const struct affine mirror = {{-1, 0, 0, 2, 0, 1, 0, 0, 0, 0, 1, 0}};
+    struct image images[2];
+    for (int flat = 0; flat < 2; ++flat) {
+        struct scene *scene = dark_scene((double[]){-6, 1, 2}, (double[]){1, 0, 0});
+        struct scene_material red = clear_glass(1.5f, 0);
+        set_sky(scene, 1, 1, 1);
+        set_rgb(red.absorption, 0, 0.2f, 0.4f);
+        uint32_t box = scene_put(scene, mesh_box(2, 2, 2), &(struct put){.material = &red});
+        scene_put_again(scene, box, &(struct put){.matrix = &mirror});
+        const whit_accel_params accel = {.instances =
+                                             flat ? WHIT_INSTANCES_OFF : WHIT_INSTANCES_ON};
+        images[flat] = color_of(scene, &accel, &params);
+    }
+    double worst = 0;
+    for (size_t i = 0; i < 4 * (size_t)(40 * 40); ++i)
+        worst = fmax(worst, fabs((double)(images[0].pixels[i] - images[1].pixels[i])));
+    assert_true(worst < 1e-4);
+    image_finish(&images[0]);
+    image_finish(&images[1]);
+}
+
 /* ---- The list of media ---- */
 
 static struct scene *shell_scene(int count)
