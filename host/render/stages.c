@@ -235,7 +235,7 @@ static whit_result record_lights(struct tile_run *run)
         result = dispatch_own(run, STAGE_SHAPE_LIGHT, list);
         if (result == WHIT_OK)
             result = dispatch(run, camera ? STAGE_SHADOW : STAGE_SHADOW_LATER, list);
-        run->dispatches += each - 1;
+        run->dispatches += run->chunk.lights - 1;
     }
     return result;
 }
