@@ -8,8 +8,8 @@
 WHIT_CHECK whit_result lights_write(struct renderer *renderer);
 /* Bits 1 << LIGHT_* of the kinds in `pose`. */
 uint32_t lights_kinds(const struct scene_pose *pose);
-/* Whether one list of lit hits serves all lights: they are more than LIGHT_LISTS, or none has a
-   range or a cone, so that each reaches most hits. */
+/* Whether one list of lit hits serves several lights well: they are more than LIGHT_LISTS, or none
+   has a range or a cone, so that each reaches most hits. */
 bool lights_share_hits(const struct scene_pose *pose);
 /* The number of points sampled on each flat emitter; 1 where the pose has none. */
 uint32_t lights_samples(const struct renderer *renderer);

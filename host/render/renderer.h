@@ -110,9 +110,9 @@ struct stage_set {
     uint32_t classes;                /* classes of materials; each has its own shading kernel */
     uint32_t hit_rows;               /* as variant_hit_rows() */
     uint32_t lights_each;            /* lights of a dispatch: SPEC_LIGHTS_EACH, or 1 */
-    bool shares_hits;                /* whether lights take their hits from one list */
-    bool calls[CLASSES_MAX];         /* whether hits of a class send further rays */
-    bool asks;                       /* whether hits go on to the shadow stages */
+    bool shares_hits;        /* whether lights take their hits from one list, few as they are */
+    bool calls[CLASSES_MAX]; /* whether hits of a class send further rays */
+    bool asks;               /* whether hits go on to the shadow stages */
     bool asks_directly; /* whether any hits do where STAGE_SHADE_DIRECT shades opaque surfaces */
 };
 

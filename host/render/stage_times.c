@@ -78,10 +78,16 @@ static uint64_t items_of(const struct gpu_generation *generation, uint32_t list)
     return (uint64_t)generation->lists[list].front + generation->lists[list].back;
 }
 
+bool stage_times_by_light(const struct renderer *renderer)
+{
+    return renderer->frame.light_count <= LIGHT_LISTS;
+}
+
 static void add_generation(struct target *target, const struct gpu_generation *generation,
                            bool camera)
 {
-    uint32_t lights = target->renderer->frame.light_count;
+    bool by_light = stage_times_by_light(target->renderer);
+    uint32_t rows = by_light ? target->renderer->frame.light_count : 1;
     uint64_t hits = 0;
     if (!camera)
         add_items(target, RENDER_STAGE_CLOSEST, items_of(generation, LIST_RAYS));
@@ -92,7 +98,7 @@ static void add_generation(struct target *target, const struct gpu_generation *g
     }
     if (!camera)
         add_items(target, RENDER_STAGE_RESOLVE, hits);
-    for (uint32_t i = 0; i < (lights > LIGHT_LISTS ? 1 : lights); ++i) {
+    for (uint32_t i = 0; i < rows; ++i) {
         uint32_t rays = generation->lists[LIST_LIGHTS + i].shadow_rays;
         add_items(target, RENDER_STAGE_SHADOW + i, rays);
         target->stats.rays_shadow += rays;
@@ -126,13 +132,13 @@ void stage_times_scale(const struct renderer *renderer, whit_stats *stats)
 {
     static const char *const names[] = {"camera",      "closest", "shade",
                                         "shade glass", "resolve", "deferred"};
-    bool several = renderer->frame.light_count > LIGHT_LISTS;
+    bool by_light = stage_times_by_light(renderer);
     for (uint32_t row = 0; row < RENDER_STAGE_COUNT; ++row) {
         const struct stage_sample *timed = &renderer->picture.timed[row];
         whit_stage *stage = &stats->stages[row];
         if (row < RENDER_STAGE_SHADOW)
             snprintf(stage->name, sizeof stage->name, "%s", names[row]);
-        else if (several)
+        else if (!by_light)
             snprintf(stage->name, sizeof stage->name, "shadows");
         else
             snprintf(stage->name, sizeof stage->name, "shadows of light %u",

@@ -4,6 +4,8 @@
 
 #include "render/renderer.h"
 
+/* Whether each light has a row of its own; else all share the first one. */
+bool stage_times_by_light(const struct renderer *renderer);
 void stage_times_begin(struct target *target);
 /* Call it when a submission begins, with its first span open. */
 void stage_times_submission(struct target *target);

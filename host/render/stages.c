@@ -44,12 +44,6 @@ static size_t list_offset(uint32_t list)
     return offsetof(struct gpu_generation, lists) + list * sizeof(struct gpu_items);
 }
 
-/* Whether each light has a row in whit_stats.stages. */
-static bool has_rows_of_lights(const struct tile_run *run)
-{
-    return run->target->renderer->frame.light_count <= LIGHT_LISTS;
-}
-
 /* The row of whit_stats.stages that a dispatch counts in: RENDER_STAGE_*. */
 static uint32_t row_of(const struct tile_run *run, enum stage stage, uint32_t list)
 {
@@ -64,7 +58,8 @@ static uint32_t row_of(const struct tile_run *run, enum stage stage, uint32_t li
     };
     if (stage >= STAGE_HIT && stage <= STAGE_AOV)
         return RENDER_STAGE_SHADE + (list - LIST_HITS);
-    bool by_light = rows[stage] == RENDER_STAGE_SHADOW && has_rows_of_lights(run);
+    bool by_light =
+        rows[stage] == RENDER_STAGE_SHADOW && stage_times_by_light(run->target->renderer);
     return rows[stage] + (by_light ? run->chunk.light : 0);
 }
 
@@ -218,12 +213,12 @@ static whit_result record_hits(struct tile_run *run)
     return result;
 }
 
-/* In a timed tile each of the lights that have a row in whit_stats.stages has its own dispatch. */
+/* In a timed tile each light that has a row of its own has a dispatch of its own. */
 static whit_result record_lights(struct tile_run *run)
 {
     const struct target *target = run->target;
     const struct stage_set *set = &target->stages.set;
-    bool camera = run->chunk.generation == 0, few = has_rows_of_lights(run);
+    bool camera = run->chunk.generation == 0, few = stage_times_by_light(target->renderer);
     bool asks = lights_directly(run) ? set->asks_directly : set->asks;
     uint32_t lights = asks ? target->renderer->frame.light_count : 0;
     uint32_t each = few && target->stages.times.on ? 1 : set->lights_each;

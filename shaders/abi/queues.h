@@ -26,7 +26,8 @@
 /* A bit in the word that names a hit's record: at NUMERICS_EXACT, the hit is the far end of a
    sphere. */
 #define HIT_AT_EXIT 0x80000000u
-/* The same bit in the word that names the record on which a ray starts: SKIP_ALL. */
+/* The same bit in the word that names the record on which a ray starts: the ray skips all primitives
+   of that instance (SKIP_ALL). */
 #define RECORD_SKIPS_ALL 0x80000000u
 
 /* sums[].w of a ray, as bits: which rays it called for, and the id of the first of them in

@@ -104,7 +104,8 @@ Primitive make_primitive(const uint mode, RecordRows rows, uint instance, uint s
     p.instance = SPEC_FLAT != 0u ? p.flags >> TRIANGLE_INSTANCE_SHIFT : instance;
     p.is_sphere = SPEC_SPHERES != SPHERES_NONE && (p.flags & TRIANGLE_SPHERE) != 0u;
     bool skipped = p.index == skip_primitive;
-    if (SPEC_INSTANCED != 0u && SPEC_PACKETS != 0u) // the only rays that enter such an instance
+    // Packets enter an instance that some of their rays skip. Rays alone do not.
+    if (SPEC_INSTANCED != 0u && SPEC_PACKETS != 0u)
         skipped = skipped || skip_primitive == SKIP_ALL;
     p.self = skipped && p.instance == skip_instance;
     p.known = SPEC_NUMERICS == NUMERICS_EXACT && mode == TRAVERSE_NEXT && p.self && p.is_sphere;

@@ -169,8 +169,8 @@ TEST(shared_faces_are_found_at_every_level)
     image_finish(&images[1]);
 }
 
-/* Two bodies that touch in the triangle that a ray leaves and enters: one mesh and its mirror
- * image. */
+/* A mesh and its mirror image touch in a face, through which rays go from the first instance into
+   the second: by the same triangle of both. */
 TEST(mirrored_bodies_share_a_triangle)
 {
     const whit_renderer_params params = {.width = 40, .height = 40, .depth = 4};

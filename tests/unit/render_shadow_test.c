@@ -437,7 +437,7 @@ static uint64_t instances_entered(struct scene_mesh mesh)
     return picture.stats.costs[RAY_SHADOW].instances;
 }
 
-/* What a body cannot shade itself with is not tested: accel_hull. */
+/* Primitives of a body that cannot shade itself are not tested (accel_hull). */
 TEST(rays_that_leave_a_convex_body_do_not_enter_it)
 {
     assert_int_equal(instances_entered(mesh_plane(2)), 0);
